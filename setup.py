@@ -35,7 +35,11 @@ setup(
     license=package.findtext("license"),
     python_requires=">=3.8",
     install_requires=["numpy"],
-    extras_require={"sweep": ["scipy", "h5py", "pyyaml"], "identification": ["scipy", "pyyaml"]},
+    extras_require={
+        "sweep": ["scipy", "h5py", "pyyaml"],
+        "identification": ["scipy", "pyyaml"],
+        "plots": ["matplotlib", "scipy", "h5py"],
+    },
     package_dir={"": "src/python"},
     packages=find_packages("src/python"),
     package_data={"flexarm": ["*.pyi", "py.typed"]},

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""What would meshes gain whose elements are not equally long within a beam? The tables of docs/notes/tuning.md, 8.
+"""Measure the gain of meshes whose elements have different lengths within a beam: the tables of docs/notes/tuning.md,
+8.
 
-graded_meshes.py [WORD ...]: scenes with one of these words in their names; all of them take two minutes of the
-processor. Borders are put where the error of the motion that is judged is least, which no rule could know, or by a rule
-from the curvature.
+graded_meshes.py [WORD ...]: uses the scenes with one of these words in their names. All scenes take two minutes of
+processor time. Element borders are chosen in two ways: where the error of the judged motion is least, which no rule
+could know in advance, and by a rule from the curvature.
 """
 
 import itertools
@@ -43,7 +44,8 @@ def turned(duration):
 
 
 def arm(joint, beam, motion="", load=None, gravity="0 0 -9.81", damping=5e-4, length=1):
-    """A straight beam along x; `load`: a mass [kg], where it is along the beam [m], its inertia [kg m^2]."""
+    """Return the scene of a straight beam along x. `load`: a mass [kg], its place along the beam [m], its inertia [kg
+    m^2]."""
     carried = """
       <joint name="grip" type="fixed"> <parent link="arm"/> <child link="load"/> <origin xyz="{1} 0 0"/> </joint>
       <link name="load"> <inertial> <mass value="{0}"/> <inertia ixx="{2}" iyy="{2}" izz="{2}" ixy="0" ixz="0" iyz="0"/>
@@ -73,7 +75,8 @@ def config(path):
 ROTOR = section(0.05, 0.1, 1e4, 1e-6) + '<hub at="start" mass="10" inertia="10 10 10"/>'
 SPUN = '<initial joint="root" velocity="20"/>' + force(1, "0 2 0", "0:0 0.1:0 0.2:1 0.3:0")
 PULLED = force(1, "20 0 0", "0:0 0.3:1") + force(1, "0 0 4", "0:0 0.4:0 0.5:1 0.6:0")
-# (name, beam): scene, borders that all its meshes have (of its length), time, step [s], steps between judged times.
+# (name, beam): scene, borders that all its meshes have (relative to its length), time [s], step [s], steps between
+# judged times.
 SCENES = {
     ("demo arm", "upper_arm"): (config("demo_arm.urdf"), [], 5, 5e-3, 20),
     ("demo arm", "lower_arm"): (config("demo_arm.urdf"), [], 5, 5e-3, 20),
@@ -103,7 +106,7 @@ SCENES = {
         arm("fixed", section(0.02, 0.2, 1e4, 1e-6), force(1, "0 0 2", "0:0 0.2:1 0.4:0"), (0.2, 1, 1e-5), "9.81 0 0",
             1e-2), [], 2, 4e-3, 5),
 }
-# Other motions of the same beams.
+# Other motions of the same beams, to test whether a mesh that is good for one motion is good for others.
 OTHERS = {
     "elastica": {"pushed sideways": cantilever(1, force(1, "0 3 0", "0:0 0.3:1 0.6:0"), "0 0 0"),
                  "pulled along": cantilever(1, gravity="3 0 -1")},
@@ -122,7 +125,7 @@ def demo_efforts(steps, step):
 
 
 class Beam:
-    """The error that one beam's mesh makes in the probes; all other beams have two elements of order 3."""
+    """The error that the mesh of one beam causes in the probes. All other beams have two elements of order 3."""
 
     def __init__(self, name, link, scene, fixed, until, step, every):
         self.scene, self.link, self.step, self.every = scene, link, step, every
@@ -136,7 +139,8 @@ class Beam:
         self.scale = numpy.linalg.norm(self.rich - self.rich[0], axis=2).max()
 
     def simulation(self, mesh, order):
-        """`mesh`: a number of equally long elements, or their borders: the line gets a straight piece for each."""
+        """Return a simulation. `mesh` is a number of equally long elements, or the list of their borders; then the
+        centreline gets a straight piece for each element."""
         root = ElementTree.fromstring(self.scene)
         for link in root.findall("link[beam]"):
             beam, is_judged = link.find("beam"), link.get("name") == self.link
@@ -157,7 +161,7 @@ class Beam:
         return rows[:, 1:].reshape(len(rows), -1, 3)
 
     def error(self, mesh, order):
-        """That of docs/notes/accuracy.md; infinite if a step fails."""
+        """Return the error as docs/notes/accuracy.md defines it, or infinity if a step fails."""
         try:
             squares = ((self.positions(mesh, order) - self.rich) ** 2).sum(axis=2)
         except flexarm.StepError:
@@ -166,13 +170,15 @@ class Beam:
         return numpy.sqrt(squares.sum(axis=0) / len(squares)).max() / self.scale
 
     def allocations(self, count):
-        """How many elements lie between the borders that all meshes have: the four nearest to equal lengths."""
+        """Return how many elements lie between each two fixed borders: the four allocations nearest to equal
+        lengths."""
         parts = numpy.diff(self.fixed)
         found = [c for c in itertools.product(range(1, count + 1), repeat=len(parts)) if sum(c) == count]
         return sorted(found, key=lambda c: abs(numpy.array(c) - count * parts).sum())[:4]
 
     def borders(self, allocation, logarithms):
-        """Of elements whose lengths have these logarithms, but for a factor between fixed borders."""
+        """Return the borders of elements whose lengths have these logarithms, scaled to fit between the fixed
+        borders."""
         out, first = [0.0], 0
         for begin, end, count in zip(self.fixed, self.fixed[1:], allocation):
             lengths = numpy.exp(logarithms[first:first + count])
@@ -181,7 +187,8 @@ class Beam:
         return out
 
     def best(self, count, order):
-        """The least error found, and its mesh: a family of two numbers, then, up to four elements, each by itself."""
+        """Return the least error found, and its mesh. The search varies two numbers or, for up to four elements, each
+        length."""
         found = [(self.error(count, order), count)]
 
         def judge(allocation, logarithms):
@@ -206,7 +213,8 @@ class Beam:
         return min(found, key=lambda x: x[0])
 
     def by_curvature(self, count, order):
-        """h^(p+1) |d^p curvature / ds^p|, the latter as a root mean square over time, is the same in all elements."""
+        """Return borders so that h^(p+1) |d^p curvature / ds^p| is the same in all elements. The derivative is a root
+        mean square over time."""
         simulation, strains, every = self.simulation(10, 4), [], self.steps // 40
         for k in range(40):
             commands = dict(self.commands)
@@ -225,7 +233,8 @@ class Beam:
 
 
 def errors(beam):
-    """By order and number of elements: equally long, best, by curvature."""
+    """Return, for each order and number of elements, the errors of three meshes: equal lengths, best found, by
+    curvature."""
     found = {}
     for order in ORDERS:
         for count in range(len(beam.fixed) - 1, MOST + 1):
@@ -240,7 +249,7 @@ def errors(beam):
 
 
 def least(found, kind, accuracy, cost):
-    """The least cost, by orders, of a mesh that is good enough."""
+    """Return the least cost of a mesh that is accurate enough. `cost` is the cost of an element by its order."""
     enough = [cost[order] * count for (order, count), error in found.items()
               if order in cost and error[kind] <= accuracy]
     return str(min(enough, default="–"))

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Do standard errors of `flexarm identify` tell the truth? The example of docs/identify.md, with noise again and again.
+"""Test whether the standard errors of `flexarm identify` are right, on the example of docs/identify.md with repeated
+noise.
 
-identify_coverage.py [RUNS]: how many of the 95 % intervals cover the truth, how large errors are in units of standard
-errors (1), and what a search costs. Three minutes of the processor for the 200 runs that it makes by default.
+identify_coverage.py [RUNS]: prints how many of the 95 % intervals cover the truth, how large errors are in units of
+standard errors (1 is right), and the cost of a search. The default of 200 runs takes three minutes of processor time.
 """
 
 import os
@@ -20,7 +21,7 @@ TRUTH = {"young": 70e9, "joint_damping": 0.1, "payload": 0.5}
 
 
 def experiment_of(scene, until=1.2, every=5e-3):
-    """The example's, with what is measured without noise, and the plan's noise of each value."""
+    """Return the experiment of the example, its measurements without noise, and the noise of each value by the plan."""
     plan = read_plan(os.path.join(FOLDER, "plan.yaml"), flexarm.read_scene(scene).parameters)
     times = numpy.arange(round(until / every) + 1) * every
     rows = numpy.zeros((len(times), 1 + len(plan.columns)))

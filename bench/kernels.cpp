@@ -1,7 +1,7 @@
-// What the parts of a step cost, with Google Benchmark: `bench_kernels --benchmark_filter=evaluate/em`.
+// Measures the cost of the parts of a step with Google Benchmark: `bench_kernels --benchmark_filter=evaluate/em`.
 //
-// The beam is the right-angle cantilever of Simo and Vu-Quoc (1988) in motion. The counter "elements/s" is how many
-// elements the processor does in a second.
+// The beam is the right-angle cantilever of Simo and Vu-Quoc (1988) in motion. The counter "elements/s" is the number
+// of elements that the processor handles per second.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ Simulation cantilever_in_motion(const std::string& scheme, int elements, int ord
   return simulation;
 }
 
-/// The equations of a step that begins in the midst of the motion.
+/// The equations of a step that begins in the middle of the motion.
 struct StepUnderWay {
   Simulation simulation;
   StepSystem system;
@@ -87,7 +87,7 @@ void gather(benchmark::State& state, int order) {
   count_elements(state, kElements);
 }
 
-/// Tangents of four elements from packs to the elements' blocks.
+/// Adds the tangents of four elements, stored in packs, to the blocks of these elements.
 template <int Nodes>
 void scatter(benchmark::State& state) {
   constexpr int kBlocks = Nodes * Nodes;
@@ -109,7 +109,7 @@ void scatter(benchmark::State& state) {
 void factorise_tree(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
   for (auto _ : state) {
-    step.system.evaluate(true);  // factors take the place of what they are made of
+    step.system.evaluate(true);  // the factors overwrite the matrix, so it is computed again
     const auto begin = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(step.system.tangent().factorise());
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -132,7 +132,7 @@ void solve_tree(benchmark::State& state, int order) {
 void factorise_matrix(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order, BackendChoice::Matrix);
   step.system.evaluate(true);
-  step.system.tangent().factorise();  // chooses pivots; later ones keep them
+  step.system.tangent().factorise();  // chooses pivots, which later factorisations keep
   for (auto _ : state) benchmark::DoNotOptimize(step.system.tangent().factorise());
   count_elements(state, kElements);
 }
@@ -161,7 +161,7 @@ void whole_step(benchmark::State& state, const std::string& scheme, int order, b
   state.counters["newton"] = static_cast<double>(iterations) / static_cast<double>(state.iterations());
 }
 
-/// Rotation, curvature and generalised shape functions at all stiffness points of one element.
+/// Computes rotation, curvature and generalised shape functions at all stiffness points of one element.
 template <int Nodes>
 void interpolate_rotations(benchmark::State& state) {
   std::array<Quaternion, Nodes> rotations;
@@ -180,7 +180,7 @@ void interpolate_rotations(benchmark::State& state) {
   count_elements(state, 1);
 }
 
-/// Maps of a revolute joint over a step, with arms on both sides.
+/// Computes the maps of a revolute joint over a step, with lever arms on both sides.
 void fold_maps(benchmark::State& state, bool with_tangent) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
@@ -205,7 +205,7 @@ void fold_maps(benchmark::State& state, bool with_tangent) {
   }
 }
 
-/// The demo as it stands: matrices, inputs, outputs.
+/// Linearises the demo scene: matrices, inputs, outputs.
 void linearise_demo(benchmark::State& state) {
   Simulation simulation(*scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/demo_arm.urdf").scene);
   for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(linearise(simulation).a.data());

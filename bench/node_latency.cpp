@@ -1,10 +1,10 @@
-/// How late steps of the node begin, and after how many steps a command acts: follows the node's states, a message of
-/// each step, and answers each with an effort that tells it from the others.
+/// Measures how late the steps of the node begin, and after how many steps a command acts. Follows the node's states,
+/// one message for each step, and answers each with an effort that identifies it.
 ///
 ///   bench_node_latency JOINT SECONDS
 ///
-/// Writes a table in Markdown. Exit status 1: a message was missed, or stamped unevenly. Started by
-/// scripts/measure_latency.
+/// Writes a table in Markdown. The exit status is 1 if a message was missed or stamped unevenly.
+/// scripts/measure_latency starts this program.
 #include <flexarm/JointForceCommand.h>
 #include <flexarm/SimulatorStatus.h>
 #include <ros/callback_queue.h>
@@ -21,10 +21,11 @@
 
 namespace {
 
-/// Efforts go round: no command acts so late that another one looks like it [N m].
+/// Number of commands after which efforts repeat, and the difference of two efforts [N m]. No command acts so late that
+/// it could be mistaken for another one.
 constexpr std::size_t kEfforts = 1000;
 constexpr double kEffortUnit = 0.01;
-constexpr std::size_t kLongest = 10;  // steps that are told apart
+constexpr std::size_t kLongest = 10;  // number of steps of delay that are distinguished
 
 class Follower {
  public:
@@ -35,13 +36,13 @@ class Follower {
     status_ = node.subscribe("flexarm/status", 100, &Follower::receive_status, this, hints);
   }
 
-  /// From now on all counts.
+  /// Starts the measurement.
   void begin() {
     stamps_.clear();
     ages_.fill(0);
     first_ = last_;
   }
-  /// @returns whether each step was told of, evenly
+  /// @returns whether a message came for each step, with even stamps
   bool report() const;
 
  private:
@@ -52,7 +53,8 @@ class Follower {
   std::string joint_;
   std::vector<ros::Time> stamps_;
   std::size_t received_ = 0;
-  std::array<std::uint64_t, kLongest + 1> ages_{};  // states by the age of what their effort answers; the last: older
+  // Counts of states by the age of the state that their effort answers; the last one counts all older ages
+  std::array<std::uint64_t, kLongest + 1> ages_{};
   flexarm::SimulatorStatus first_, last_;
   ros::Publisher commands_;
   ros::Subscriber states_, status_;
@@ -63,7 +65,7 @@ void Follower::receive_state(const sensor_msgs::JointState& state) {
   if (name == state.name.end()) return;
   const double effort = state.effort[static_cast<std::size_t>(name - state.name.begin())];
   const auto acting = static_cast<std::size_t>(std::lround(effort / kEffortUnit));
-  // The effort in the step that this state ends answered the state so many steps before.
+  // The effort in the step that ends with this state answered the state `age` steps earlier.
   const std::size_t age = (received_ % kEfforts + kEfforts - acting % kEfforts) % kEfforts;
   ++ages_[std::min(age, kLongest)];
   stamps_.push_back(state.header.stamp);
@@ -74,7 +76,7 @@ void Follower::receive_state(const sensor_msgs::JointState& state) {
   ++received_;
 }
 
-/// Distances of stamps that are no whole number of steps, to a nanosecond.
+/// Returns how many distances of stamps are not a whole number of steps, to within a nanosecond.
 std::uint64_t Follower::uneven_gaps() const {
   const auto step = std::lround(1e9 * last_.step);
   std::uint64_t uneven = 0;

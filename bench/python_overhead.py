@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""What Python costs: `bench/python_overhead.py`, after `source devel/setup.bash`; on a quiet machine, half a minute.
+"""Measure the overhead of Python: `bench/python_overhead.py`, after `source devel/setup.bash`. Takes half a minute on a
+quiet machine.
 
-Per call of step(): the time of a step by itself less that of one in run(). Threads: steps per second of two simulations
-in two threads over those of one. The scenes are the smallest one, of which most is overhead, and one with beams.
+Overhead of a call of step(): the time of a single step minus the time of a step in run(). Threads: the steps per second
+of two simulations in two threads, relative to one simulation. The scenes are the smallest scene, in which overhead
+dominates, and a scene with beams.
 """
 
 import os
@@ -26,7 +28,7 @@ def seconds(work):
 
 
 def step_overhead(name, steps):
-    """Of a call of step() [s], the least of some, taken in turns."""
+    """Return the overhead of a call of step() [s], by the least times of some runs, taken in turns."""
     simulation = simulation_of(name)
 
     def one_by_one():
@@ -42,7 +44,7 @@ def step_overhead(name, steps):
 
 
 def speedup(name, steps):
-    """Of two simulations in two threads; the median of ratios, each of runs that follow each other."""
+    """Return the speed-up of two simulations in two threads: the median of ratios, each of consecutive runs."""
     simulations = [simulation_of(name), simulation_of(name)]
 
     def in_threads():

@@ -1,8 +1,8 @@
-// How fast a scene runs: wall time per step, free-running and paced at real time.
+// Measures how fast a scene runs: wall time per step, as fast as possible and paced at real time.
 //
 //   bench_real_time SCENE [STEPS] [JOINT EFFORT PERIOD]
 //
-// JOINT is driven by a square wave of EFFORT [N m or N] with PERIOD [s]; the demo by
+// JOINT is driven by a square wave of EFFORT [N m or N] with PERIOD [s]. For the demo, type
 //   bench_real_time config/demo_arm.urdf 1000 shoulder_yaw 1000 0.5
 #include <algorithm>
 #include <chrono>
@@ -36,7 +36,7 @@ struct Drive {
   }
 };
 
-/// Wall times of the single steps [s]; paced: every step waits for its time, as in the node.
+/// Returns the wall time of each step [s]. If `paced`, each step waits for its time, as in the node.
 std::vector<double> run(flexarm::Simulation& simulation, const Drive& drive, int steps, bool paced) {
   std::vector<double> times;
   times.reserve(steps);

@@ -1,9 +1,9 @@
-// Which bits come out: a line for each scene and each scheme that takes it, with a hash of the state after some steps
-// and of the equilibrium. A change of structure leaves every line as it was.
+// Shows changes of results in any bit: prints a line for each scene and each scheme that accepts it, with a hash of the
+// state after some steps and of the equilibrium. A refactoring must leave every line unchanged.
 //
 //   bench_result_bits SCENE... > before.txt
 //
-// Two runs compare only if the same compiler built them and the same processor ran them.
+// Outputs are comparable only if they come from the same compiler and the same processor.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -25,7 +25,7 @@ namespace {
 constexpr int kSteps = 300;
 constexpr int kLoadSteps = 4;
 
-/// FNV-1a of a checkpoint, which has all that a state is made of.
+/// Returns the FNV-1a hash of a checkpoint, which contains the complete state.
 std::uint64_t state_hash(const flexarm::Simulation& simulation, const std::string& file) {
   flexarm::write_checkpoint(simulation, file);
   std::ifstream stream(file, std::ios::binary);
@@ -37,7 +37,7 @@ std::uint64_t state_hash(const flexarm::Simulation& simulation, const std::strin
   return hash;
 }
 
-/// Steps that fail halve, and what then fails is a result, too.
+/// Runs a scene with a scheme and prints its line. Failed steps are halved; a final failure is also a result.
 void report(const flexarm::scene::SceneDescription& scene, const std::string& path, const std::string& scheme,
             const std::string& file) {
   flexarm::SimulationOptions options;

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""What sensitivities cost: `bench/sensitivities_cost.py`, after `source devel/setup.bash`; on a quiet machine.
+"""Measure the cost of sensitivities: `bench/sensitivities_cost.py`, after `source devel/setup.bash`, on a quiet
+machine.
 
-Processor time of a run with sensitivities of one parameter and of three, over that of the run alone; the least of some,
-taken in turns. The table of docs/notes/sensitivities.md.
+Prints the processor time of a run with sensitivities of one parameter and of three, relative to the run alone. Each
+time is the least of some, taken in turns. This is the table of docs/notes/sensitivities.md.
 """
 
 import os

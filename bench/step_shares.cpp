@@ -1,7 +1,7 @@
-// What a step spends its time on, phase by phase, as the step itself tells it.
+// Measures the time of a step phase by phase, as the step reports it.
 //
-// Counters: percent of the step's time, "rest%" being step control; iterations and factorisations per step;
-// "new/kept": an iteration with new factors over one with kept ones.
+// Counters: the percentage of each phase ("rest%" is step control); iterations and factorisations per step; "new/kept":
+// the time of an iteration with new factors relative to an iteration with kept factors.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kStepsBefore = 20;
 
-/// Time of each phase, and how often it came.
+/// Measures the time of each phase and counts its calls.
 class PhaseTimes : public StepObserver {
  public:
   void enter(StepPhase phase) override {
@@ -34,7 +34,7 @@ class PhaseTimes : public StepObserver {
     since_ = now;
     running_ = true;
   }
-  /// A step has ended: what comes until the next one is not counted.
+  /// Ends a step: the time until the next step does not count.
   void pause() {
     enter(StepPhase::Control);
     running_ = false;
@@ -112,8 +112,8 @@ BENCHMARK_CAPTURE(step_shares, sliding_arm, FLEXARM_SOURCE_DIR "/config/examples
 
 enum class Kept { Free, Driven, Held, Fixed };
 
-/// A rigid arm of six joints that swings, and the last two of which are free, stand still by a function of time or by a
-/// number, or are none.
+/// A swinging rigid arm of six joints. Its last two joints are free, or prescribed at zero by a function of time, or
+/// prescribed by a constant, or fixed.
 void still_wrist(benchmark::State& state, Kept kept) {
   scene::ReadResult read = scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/speed/six_joint_arm.urdf");
   if (!read.scene) return state.SkipWithError("the scene cannot be read");

@@ -1,6 +1,7 @@
-/// What results cost the thread that steps: a scene with a row of columns after each step, written by that thread
-/// itself or by one of its own, with its state handed to a mirror, as the node does whether somebody listens or not, or
-/// looked at for the warnings at the end of a run; beside nothing read at all.
+/// Measures how much results slow down the thread that steps, compared with reading nothing. A row of columns follows
+/// each step, written by that thread itself or by a separate thread. Other cases copy the state to a mirror, as the
+/// node does whether anybody listens or not, or read what the warnings at the end of a run need.
+///
 ///   bench_writing SCENE [STEPS]
 
 #include <cstdio>
@@ -25,15 +26,15 @@ double seconds(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// What is read after each step.
+/// What is read after each step, and how.
 struct Reading {
   const char* name;
   enum class Way { Nothing, Mirror, Summary, InPlace, Background } way;
-  std::vector<std::string> columns = {};  ///< patterns; empty: all
+  std::vector<std::string> columns = {};  ///< patterns; if empty, all columns
 };
 
 struct Cost {
-  double wall, stepping, all;  // of the clock on the wall, of the thread that steps, of all threads [s]
+  double wall, stepping, all;  // wall-clock time, time of the stepping thread, time of all threads [s]
 };
 
 std::unique_ptr<ResultWriter> make_writer(const Simulation& simulation, const Reading& reading) {

@@ -53,21 +53,23 @@ CONTENTS = {
     "README": [
         ("Use", """docs/install docs/guide docs/tutorial_flexible_link docs/tutorial_servo docs/tutorial_ros
             docs/tutorial_moveit docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep
-            docs/payloads docs/identify docs/linearise docs/results docs/portability"""),
-        ("Reference", """docs/scene_format docs/ros docs/rviz docs/command_line docs/python docs/python_api docs/cpp_api
-            docs/schemes"""),
+            docs/payloads docs/identify docs/linearise docs/show docs/results docs/plot docs/film docs/portability"""),
+        ("Reference", """docs/scene_format docs/ros docs/rviz docs/web docs/command_line docs/python docs/python_api
+            docs/cpp_api docs/schemes"""),
         ("Theory", "docs/theory docs/notes/README docs/architecture CONTRIBUTING"),
-        ("Reports", """docs/demo docs/contact docs/reports/speed docs/reports/accuracy docs/reports/hard
+        ("Reports", """docs/demo docs/contact docs/lines docs/reports/speed docs/reports/accuracy docs/reports/hard
             docs/reports/properties docs/reports/thesis docs/reports/scaling docs/reports/latency docs/reports/soak
             docs/reports/faults"""),
     ],
     "docs/scene_format": [
-        ("", """scene/conventions scene/parameters scene/links scene/joints scene/loops scene/play scene/drives
-            scene/simulation scene/springs scene/contact scene/sensors scene/functions_of_time scene/checks"""),
+        ("", """scene/conventions scene/parameters scene/links scene/joints scene/loops scene/cylinders scene/play
+            scene/drives scene/simulation scene/springs scene/tendons scene/contact scene/sensors
+            scene/functions_of_time scene/checks"""),
     ],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
-        ("", "beam joints beyond newton tree planar stops drives contact linearisation sensitivities accuracy tuning"),
+        ("", """beam joints beyond newton tree planar stops drives lines contact linearisation sensitivities accuracy
+            tuning page"""),
     ],
 }
 

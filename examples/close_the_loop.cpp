@@ -1,5 +1,5 @@
-// Moves joints of an arm to given angles with PD controllers that run at 1 kHz, and prints where the tips of its
-// flexible links are and how much energy is where. For each joint: its name, the angle [rad], stiffness [N m/rad] and
+// Moves joints of an arm to given angles by PD controllers that run at 1 kHz. Prints the positions of the tips of
+// flexible links, and the energies. Arguments for each joint: its name, the angle [rad], stiffness [N m/rad] and
 // damping [N m s/rad] of its controller.
 //
 //   close_the_loop arm.urdf shoulder 0.8 200 2
@@ -23,7 +23,7 @@ struct Controller {
   double start, goal, stiffness, damping;
 
   double effort(const flexarm::Simulation& simulation) const {
-    // On the way from start to goal without a jump of the speed, which would make the links ring.
+    // The set point moves from start to goal without a jump of the speed, which would make the links vibrate.
     const double part = std::min(simulation.time() / kMove, 1.0);
     const double angle = start + (goal - start) * part * part * (3 - 2 * part);
     const double speed = (goal - start) * 6 * part * (1 - part) / kMove;
@@ -42,7 +42,7 @@ void print(const flexarm::Simulation& simulation) {
   std::printf(", kinetic %.4f J, strain %.4f J\n", energies.kinetic, energies.strain);
 }
 
-/// One step of the simulation for each period of the controllers. @return false if a step fails
+/// Makes one step of the simulation for each period of the controllers. @return false if a step fails
 bool run(flexarm::Simulation& simulation, const std::vector<Controller>& controllers) {
   const int periods = static_cast<int>(kUntil / kPeriod + 0.5);
   for (int period = 1; period <= periods; ++period) {

@@ -1,9 +1,9 @@
-# What scripts/run and scripts/test share; sourced by them.
+# Functions that several scripts of this folder use, which source this file.
 # shellcheck shell=bash
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
-devel=$root/devel # not inside build/, where rosrun does not look
+devel=$root/devel # beside build/, not in it, because rosrun does not look into build/
 ros_prefix=/opt/ros
 
 say() { printf '== %s\n' "$*" >&2; }
@@ -12,8 +12,8 @@ die() {
   exit 1
 }
 
-# The system's tools only: a Python, a compiler prefix or a workspace of the user's would shadow what ROS needs. A ROS
-# of its own folder, as /opt/ros/noetic, that the user has sourced is the only one kept, without workspaces above it.
+# Leaves only the system's tools in the environment: a Python, a compiler or a workspace of the user's would hide what ROS
+# needs. Only a sourced ROS in a folder of its own, such as /opt/ros/noetic, is kept, without workspaces on top of it.
 clean_environment() {
   local own_ros=''
   [[ -n ${ROS_DISTRO:-} && -f $ros_prefix/$ROS_DISTRO/setup.sh ]] && own_ros=$ros_prefix/$ROS_DISTRO
@@ -31,7 +31,7 @@ clean_environment() {
   fi
 }
 
-# source_setup FILE: catkin's scripts heed neither -e nor -u.
+# source_setup FILE: catkin's scripts do not work with `set -eu`.
 source_setup() {
   set +eu
   # shellcheck source=/dev/null
@@ -39,8 +39,8 @@ source_setup() {
   set -eu
 }
 
-# candidates NAME|NAME... [KEY...]: the packages that do for a line of dependencies.txt, the best one first: of a ROS that
-# is sourced those of the keys. `-` stays: it may be missing.
+# candidates NAME|NAME... [KEY...]: prints the packages that can serve a line of dependencies.txt, the best one first. If
+# a ROS is sourced, its packages of the keys come first. `-` stays, which means that the package may be missing.
 candidates() {
   local key
   if [[ -n ${ROS_DISTRO:-} ]]; then
@@ -51,14 +51,14 @@ candidates() {
   printf '%s\n' "${1//|/$'\n'}"
 }
 
-# is_installed NAME...: whether one of these packages is.
+# is_installed NAME...: whether one of these packages is installed.
 is_installed() {
-  local states # it fails if it does not know one of them
+  local states # dpkg-query fails if it does not know one of the packages
   states=$(dpkg-query --show --showformat='${db:Status-Status}\n' "$@" 2>/dev/null) || true
   grep -qx installed <<<"$states"
 }
 
-# first_known NAME...: the first one that the package lists have; nothing if it may be missing, and is.
+# first_known NAME...: prints the first package that the package lists contain; nothing if `-` comes before it.
 first_known() {
   local name
   for name; do
@@ -97,17 +97,17 @@ install_dependencies() {
     die "could not install ${packages[*]}: docs/portability.md says which systems have them"
 }
 
-# build TARGET...: configures and builds; says little unless something is wrong.
+# build TARGET...: configures and builds; prints errors only.
 build() {
   local log=$build/build.log
   say "building in $build (details: $log)"
   {
-    # A build directory that was moved along with the tree cannot be used.
+    # A build folder that was moved together with the tree cannot be used.
     if [[ -f $build/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
       rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
     fi
-    # From nothing, files are compiled by eights, and by Ninja, which compiles a program's files while a library that it
-    # links is not complete yet: no processor waits. A folder goes on as it was configured first.
+    # A fresh build compiles files in groups of eight, with Ninja. Ninja compiles a program's files before the library to
+    # which they are linked is complete, so that no processor waits. Other build folders stay configured as they are.
     local from_nothing=()
     [[ -f $build/CMakeCache.txt ]] || from_nothing=(-G Ninja -DFLEXARM_FILES_TOGETHER=ON)
     cmake -S "$root" -B "$build" \
@@ -119,12 +119,17 @@ build() {
   }
 }
 
-# Makes ROS find the package where it was built.
+# Lets ROS find the package in the folder where it was built.
 enter_workspace() {
   source_setup "$devel/setup.sh"
 }
 
-# free_port FIRST: the first port from FIRST on that nobody listens to.
+# After the demo, for which only the node is built: says how to build the rest.
+say_what_is_missing() {
+  [[ -x $devel/lib/flexarm/flexarm ]] || say "scripts/build builds the rest: the program flexarm and the Python module"
+}
+
+# free_port FIRST: prints the first port, from FIRST on, on which nobody listens.
 free_port() {
   local port=$1
   while (: <"/dev/tcp/localhost/$port") 2>/dev/null; do

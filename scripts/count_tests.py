@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
+"""Sums up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
-CTEST-REPORT is the Test.xml of `ctest -T Test --no-compress-output`, which every release of CMake writes. ctest knows
-every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the test-name of
-test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although
-each of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a
-program that could not be started has failed. What a program that failed printed last stands below its name. The last
-line is `N passed, N failed, N skipped`; the exit status is 1 if a test failed, or if none passed.
+CTEST-REPORT is the Test.xml of `ctest -T Test --no-compress-output`, which all releases of CMake write. It lists all
+programs that ran. A gtest, rostest or pytest also writes the results of its single tests to DIRECTORY, as JUnit XML
+(the test-name of test/ros/NAME.test is NAME, so that its file can be found). A program counts as one test if it has
+no such file, or if it failed although all of its tests passed. Tests count as skipped if they say so themselves, or
+if they are disabled. A program that could not be started has failed. For each program that failed, the last lines of
+its output are printed. The last line is `N passed, N failed, N skipped`. The exit status is 1 if a test failed, or if
+none passed.
 """
 
 import os
@@ -20,7 +21,7 @@ LAST_LINES = 15
 
 
 def single_tests(path):
-    """(name, outcome) of every test in a JUnit file. Raises ParseError."""
+    """Yields (name, outcome) of each test in a JUnit file. Raises ParseError."""
     for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase"):
         outcome = PASSED
         if case.find("failure") is not None or case.find("error") is not None:
@@ -31,7 +32,7 @@ def single_tests(path):
 
 
 def outcome_of_program(test):
-    """What ctest says of a program."""
+    """The outcome of a program by ctest's report."""
     completion = test.findtext("Results/NamedMeasurement[@name='Completion Status']/Value") or ""
     if completion == "Disabled" or completion.startswith("SKIP_"):
         return SKIPPED
@@ -39,7 +40,7 @@ def outcome_of_program(test):
 
 
 def result_file(directory, program):
-    """Where its runner put the single results of a ctest test, or None if it has none."""
+    """The file of single results of a ctest test, or None if its kind has none."""
     for pattern, file_name in (
         (r"_ctest_flexarm_gtest_(.*)", "gtest-%s.xml"),
         (r"_ctest_flexarm_rostest_test_ros_(.*)\.test", "rosunit-%s.xml"),
@@ -52,7 +53,7 @@ def result_file(directory, program):
 
 
 def results_of(program, outcome, directory):
-    """(name, outcome) of everything that a program tested."""
+    """A list of (name, outcome) of everything that a program tested."""
     path = result_file(directory, program)
     results = []
     if path and os.path.exists(path):

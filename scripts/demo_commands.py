@@ -1,17 +1,17 @@
 #!/usr/bin/python3
-"""Plays a schedule of joint efforts against a running simulation, again and again.
+"""Plays a schedule of joint efforts in a running simulation, again and again.
 
-Parameters: ~period, the simulated time after which the simulation is reset and the schedule starts again [s], and
-~commands, a list of
+Parameters: ~period, the simulated time after which the simulation is reset and the schedule begins again [s], and
+~commands, a list of entries of two kinds. The first is
 
     {time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}
 
-where `repeat` (1) and `every` say how often a command comes again, or
+where `repeat` (default 1) and `every` let a command repeat. The second is
 
     {names: [joint, ...], table: [[s, N m or N, ...], ...], every: s}
 
-efforts that are linear between the times of a table; a command with the mean comes every `every`. The schedule follows
-the simulated time of flexarm/status, so that it pauses, slows down and starts again together with the simulation.
+efforts that are linear between the times of a table. Every `every` seconds, a command with the mean effort is sent. The
+schedule follows the simulated time in flexarm/status, so it pauses, slows down and restarts with the simulation.
 """
 
 import threading
@@ -23,7 +23,7 @@ from std_srvs.srv import Empty
 
 
 def interpolated(table, time):
-    """Efforts at a time, constant outside of the table."""
+    """Efforts at a time; constant before and after the table."""
     before = [row for row in table if row[0] <= time] or table[:1]
     after = [row for row in table if row[0] > time] or table[-1:]
     (t0, *first), (t1, *second) = before[-1], after[0]
@@ -32,13 +32,13 @@ def interpolated(table, time):
 
 
 def pulses(command):
-    """A command as pulses of constant effort: pairs (time, command)."""
+    """Splits a command into pulses of constant effort: a list of pairs (time, command)."""
     every = command.get("every", 0.0)
     if "table" not in command:
         return [(command["time"] + k * every, command) for k in range(command.get("repeat", 1))]
     begin, end = command["table"][0][0], command["table"][-1][0]
     times = [begin + k * every for k in range(round((end - begin) / every))]
-    # Each holds until the next one comes: where that is late, no effort is lost.
+    # A pulse holds until the next one, so that no effort is missing if a message is late.
     return [
         (
             time,
@@ -53,7 +53,7 @@ def pulses(command):
 
 
 def expand(commands):
-    """Every pulse in order."""
+    """The pulses of all commands, sorted by time."""
     return sorted((event for command in commands for event in pulses(command)), key=lambda event: event[0])
 
 
@@ -61,7 +61,7 @@ class Player:
     def __init__(self, commands, period):
         self.events = expand(commands)
         self.period = period
-        self.next = 0  # the event that is due next
+        self.next = 0  # index of the next event
         self.status = None
         self.heard_at = 0.0  # wall time of the last status [s]
         self.changed = threading.Condition()
@@ -77,9 +77,9 @@ class Player:
             self.changed.notify()
 
     def delay(self, due):
-        """Wall time until the simulation reaches `due` [s]; None while it is unknown or stands still.
+        """Wall time until the simulation reaches `due` [s]; None if it is unknown, or the simulation stands still.
 
-        A status comes ten times a second, pulses are shorter: between them the simulated time is extrapolated.
+        Status messages come ten times a second, but pulses are shorter. So the time is extrapolated between messages.
         """
         status = self.status
         if status is None or status.paused or status.failed or status.real_time_factor <= 0:
@@ -87,7 +87,7 @@ class Player:
         return (due - status.time) / status.real_time_factor - (time.monotonic() - self.heard_at)
 
     def play_next(self):
-        """Waits for the next event; returns after it, or after news that may change it."""
+        """Waits for the next event and sends it. Also returns, without sending, when the event's time may change."""
         with self.changed:
             at_end = self.next == len(self.events)
             due, command = (self.period, None) if at_end else self.events[self.next]
@@ -96,7 +96,7 @@ class Player:
                 self.changed.wait(0.1 if delay is None else min(delay, 0.1))
                 return
             if at_end:
-                self.status = None  # until the first status after the reset
+                self.status = None  # unknown until the first status after the reset
             else:
                 self.next += 1
         if at_end:
@@ -109,7 +109,7 @@ class Player:
             )
 
     def start(self):
-        """Resets the simulation, which has been running since before anyone could hear the first command."""
+        """Resets the simulation as soon as it can receive commands, since it already ran before that."""
         self.reset.wait_for_service()
         while self.publisher.get_num_connections() == 0 and not rospy.is_shutdown():
             time.sleep(0.01)

@@ -1,12 +1,12 @@
-"""Moments that gravity leaves in the joints of a URDF: forward kinematics in numpy, independent of flexarm.
+"""Computes the moments of gravity in the joints of a URDF, with forward kinematics in numpy, independently of flexarm.
 
-moments(path, positions) -> {joint: (moment, largest, position, lower, upper)}, per joint that moves:
+moments(path, positions) -> {joint: (moment, largest, position, lower, upper)}, for each joint that is not fixed:
 
-  moment   generalised force of gravity on the coordinate, with that on joints that mimic it [N m or N]
-  largest  the same, were all outboard weight to act across its lever [N m or N]
+  moment   generalised force of gravity on the coordinate, including joints that mimic it [N m or N]
+  largest  the same if the weight of each outboard link acted perpendicular to its lever arm [N m or N]
 
-`positions`: coordinate -> value [rad or m]; those that are not there stand at 0. Of fixed, revolute, continuous and
-prismatic joints; ValueError if another one moves what has mass. Gravity is -9.81 m/s^2 along z; the root link, or the
+`positions`: coordinate -> value [rad or m]; other coordinates are 0. Handles fixed, revolute, continuous and prismatic
+joints; raises ValueError if a joint of another kind moves a mass. Gravity is -9.81 m/s^2 along z. The root link, or the
 link `world`, is held.
 """
 
@@ -23,7 +23,7 @@ def numbers(element, name, default):
 
 
 def rotation_about(axis, angle):
-    """Rodrigues: 3 x 3, of a unit axis."""
+    """The 3 x 3 rotation matrix about a unit axis (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
@@ -65,7 +65,7 @@ class Robot:
         self.roots = [link.get("name") for link in root.findall("link") if link.get("name") not in children]
 
     def depth(self, joint):
-        """How many others stand between a joint and the one that it follows in the end."""
+        """The number of mimics between a joint and the joint that it finally follows."""
         return 0 if joint.master not in self.joints else 1 + self.depth(self.joints[joint.master])
 
     def outboard(self, link):
@@ -76,7 +76,7 @@ class Robot:
         return links
 
     def place(self, positions):
-        """Poses {link: (position, rotation)} in the world [m], and {joint: (anchor, axis)}."""
+        """Poses {link: (position, rotation)} in the world [m], and joint axes {joint: (anchor, axis)}."""
         poses, anchors, waiting = {root: (np.zeros(3), np.eye(3)) for root in self.roots}, {}, list(self.roots)
         while waiting:
             link = waiting.pop()
@@ -113,14 +113,14 @@ def moments(path, positions):
             moment += mass * GRAVITY @ (axis if joint.kind == "prismatic" else np.cross(axis, arm))
             largest += mass * np.linalg.norm(GRAVITY) * (1 if joint.kind == "prismatic" else np.linalg.norm(arm))
         result[joint.name] = [moment, largest, positions.get(joint.name, 0.0), joint.lower, joint.upper]
-    # Followers of followers first.
+    # Joints that follow followers come first.
     for joint in sorted(robot.joints.values(), key=robot.depth, reverse=True):
         if joint.master in result and joint.name in result:
             moment, largest, position, lower, upper = result.pop(joint.name)
             master = result[joint.master]
             master[0] += joint.multiplier * moment
             master[1] += abs(joint.multiplier) * largest
-            # A stop of the follower is one of its master.
+            # A follower at its stop stops its master, too.
             sign = 1 if joint.multiplier > 0 else -1
             if position <= lower:
                 master[3 if sign > 0 else 4] = master[2]
@@ -130,8 +130,8 @@ def moments(path, positions):
 
 
 def left_over(path, positions, held=()):
-    """What gravity leaves beside the largest moment of all, where no stop carries it and nothing holds the joint; and
-    the joint."""
+    """The largest moment of gravity in a joint that neither a stop nor `held` carries, relative to the largest of all
+    possible moments; and the name of that joint."""
     joints = moments(path, positions)
     largest = max((values[1] for values in joints.values()), default=0.0)
     worst, name = 0.0, ""

@@ -1,4 +1,4 @@
-"""matplotlib's pyplot for scripts that draw into files: no display, and a message where it is not installed."""
+"""matplotlib's pyplot for scripts that draw to files, without a display. Exits if it is not installed."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ __all__ = ["pyplot", "run"]
 
 
 def run(main, usage):
-    """Calls main(data, picture) with the arguments of the command line, or says how the script is used."""
+    """Calls main(data, picture) with the command-line arguments, or prints the usage."""
     if len(sys.argv) != 3:
         sys.exit(usage)
     main(*sys.argv[1:])

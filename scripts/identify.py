@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`flexarm identify`, which runs it: finds values of a scene's parameters with which it moves as was measured.
+"""The program that `flexarm identify` runs: finds values of a scene's parameters with which it moves as was measured.
 
 docs/identify.md
 """
@@ -15,7 +15,7 @@ except ImportError as error:
 
 
 def draw(data, picture):
-    """Whether this machine can draw residuals."""
+    """Draws residuals. Returns whether this succeeded."""
     script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "plot_residuals.py")
     return subprocess.run([sys.executable, script, data, picture], check=False).returncode == 0
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `flexarm bench accuracy` measured: true over asked-for error, and cost over the best fixed choice.
+"""Plots results of `flexarm bench accuracy`: true over requested error, and cost relative to the best fixed choice.
 
 plot_accuracy.py DATA.csv PICTURE
 """
@@ -10,7 +10,7 @@ from headless_pyplot import pyplot, run
 
 
 def read(path):
-    """Rows of runs that met their accuracy and have a true error."""
+    """Reads the rows of runs that met their accuracy and have a true error."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["met"] == "1" and row["error"]]
     for row in rows:
@@ -19,7 +19,7 @@ def read(path):
 
 
 def spread(rows):
-    """Abscissas of the rows, side by side around what was asked for, so that points do not hide each other."""
+    """Abscissas of the rows, spread around the requested error so that points do not hide each other."""
     counts, places = {}, []
     for row in rows:
         counts[row["asked"]] = counts.get(row["asked"], 0) + 1
@@ -32,7 +32,7 @@ def main(data, picture):
     figure, (errors, costs) = pyplot.subplots(1, 2, figsize=(11, 4.8))
     for group in sorted({row["group"] for row in rows}):
         chosen = [row for row in rows if row["group"] == group]
-        # Of a group that has scenes of both kinds, most decide on the mark.
+        # A group with scenes of both kinds gets the mark of the majority.
         cornered = sum(row["corners"] == "cornered" for row in chosen) > len(chosen) / 2
         mark = "^" if cornered else "o"
         errors.plot(spread(chosen), [row["error"] for row in chosen], mark, markersize=4, alpha=0.7, label=group)

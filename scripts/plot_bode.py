@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the frequency responses that `flexarm linearise --frequencies` computed: a line for each output and input.
+"""Plots the frequency responses of `flexarm linearise --frequencies`: a line for each pair of output and input.
 
 plot_bode.py DATA.json PICTURE
 """
@@ -9,12 +9,12 @@ import json
 import numpy
 from headless_pyplot import pyplot, run
 
-# A legend of more lines hides what it names.
+# With more lines, the legend would hide the curves.
 MOST_NAMES = 20
 
 
 def pole_frequencies(model):
-    """Of those that oscillate, where they do within what is drawn [Hz]."""
+    """Frequencies of the oscillating poles, as far as they are within the plotted range [Hz]."""
     frequencies = numpy.array([imaginary for _, imaginary in model["poles"]]) / (2 * numpy.pi)
     return frequencies[(frequencies >= min(model["frequencies"])) & (frequencies <= max(model["frequencies"]))]
 
@@ -28,7 +28,7 @@ def main(data, picture):
     for k, output in enumerate(model["outputs"]):
         for j, entry in enumerate(model["inputs"]):
             gain = gains[:, k, j]
-            seen = gain != 0  # an output that an input does not reach has no decibels
+            seen = gain != 0  # zero gain cannot be shown in decibels
             size.plot(frequencies[seen], 20 * numpy.log10(abs(gain[seen])), label=f"{output} / {entry}")
             phase.plot(frequencies[seen], numpy.degrees(numpy.unwrap(numpy.angle(gain[seen]))))
     for axes in (size, phase):

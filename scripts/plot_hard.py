@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `flexarm bench hard` found: a line per case, a column per scheme.
+"""Plots results of `flexarm bench hard`: a line for each case, a column for each scheme.
 
 plot_hard.py DATA.csv PICTURE
 """
@@ -9,7 +9,7 @@ import math
 
 from headless_pyplot import pyplot, run
 
-# Cases side by side in so many columns of panels, to fill one page.
+# Number of panels side by side, so that all cases fill one page.
 COLUMNS = 3
 FAILED, WRONG, WARNED, DIAGNOSED, LEFT_OUT = "#d62728", "#ff9f40", "#ffe08a", "#9ecae1", "#e5e5e5"
 MOST_ITERATIONS = 50
@@ -17,7 +17,7 @@ LONGEST_NAME = 50
 
 
 def read(path):
-    """Verdicts and iterations by case in the file's order, and the schemes."""
+    """Reads verdicts and iterations by case, in the file's order, and the list of schemes."""
     cases, schemes = {}, []
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -29,7 +29,7 @@ def read(path):
 
 
 def colour(verdict, iterations):
-    """Green is quick, blue slow; what is not right has a colour of its own."""
+    """For right results green (quick) to blue (slow); other verdicts have colours of their own."""
     if verdict == "right":
         share = math.log(max(iterations, 1)) / math.log(MOST_ITERATIONS)
         return pyplot.get_cmap("viridis")(0.8 - 0.55 * min(share, 1))
@@ -38,7 +38,7 @@ def colour(verdict, iterations):
 
 
 def lines(cases):
-    """Cases with a heading before each group: (heading, None) or (name, results)."""
+    """Lines of the plot: (heading, None) before each group, and (name, results) for each case."""
     out, last = [], None
     for (group, name), results in cases.items():
         if group != last:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the numerical dissipation that `flexarm bench properties` measured.
+"""Plots the numerical dissipation that `flexarm bench properties` measured.
 
 plot_properties.py DATA.csv PICTURE
 """
@@ -10,7 +10,7 @@ from headless_pyplot import pyplot, run
 
 
 def read(path):
-    """Spectral radii over omega h by scheme."""
+    """Reads lists of (omega h, spectral radius) by scheme."""
     curves = {}
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -19,7 +19,7 @@ def read(path):
 
 
 def merge_equal(curves):
-    """Schemes that agree to drawing accuracy share one curve and its label."""
+    """Lets schemes whose curves look the same share one curve and its label."""
     merged = []
     for name, points in curves.items():
         for names, others in merged:
@@ -46,7 +46,7 @@ def main(data, picture):
     for names, points in merge_equal(read(data)):
         x = [point[0] for point in points]
         radius.semilogx(x, [point[1] for point in points], label=label(names))
-        # Of schemes that lose nothing only round-off would be drawn.
+        # Schemes without losses are left out, since only round-off would be plotted.
         losses = [1 - rho ** (4 * 3.141592653589793 / w) for w, rho in points]
         if max(losses) > 1e-6:
             loss.loglog(x, [max(part, 1e-8) for part in losses], label=label(names))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `flexarm identify` measured and simulated, and the residuals beside their noise.
+"""Plots the measured and simulated values of `flexarm identify`, and the residuals with their noise.
 
 plot_residuals.py DATA.csv PICTURE
 """
@@ -10,7 +10,7 @@ from headless_pyplot import pyplot, run
 
 
 def read(path):
-    """Columns of numbers by names of measured columns, and their units."""
+    """Reads columns of numbers, by name and unit of the measured column."""
     series = {}
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):

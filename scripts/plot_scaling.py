@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `flexarm bench scaling` measured: time and memory over the size of a mechanism.
+"""Plots results of `flexarm bench scaling`: time and memory over the size of a mechanism.
 
 plot_scaling.py DATA.csv PICTURE
 """
@@ -17,7 +17,7 @@ PANELS = (
 
 
 def read(path):
-    """Families by their name, each a list of rows."""
+    """Reads lists of rows by name of the family."""
     families = {}
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -27,7 +27,7 @@ def read(path):
 
 
 def draw_linear(axes, families, quantity):
-    """A dashed line of slope one through the highest point of all."""
+    """Draws a dashed line of slope one through the highest point of all."""
     rows = [row for family in families.values() for row in family]
     if not rows:
         raise SystemExit("plot_scaling.py: no point to draw")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `scripts/soak` saw of the node, over wall time: memory, speed, energy.
+"""Plots results of `scripts/soak` over wall time: memory, speed and energy of the node.
 
 plot_soak.py DATA.csv PICTURE
 """
@@ -8,11 +8,11 @@ import csv
 
 from headless_pyplot import pyplot, run
 
-LEAST_ENERGY = 1e-12  # J: what is less is a reset, a moment ago
+LEAST_ENERGY = 1e-12  # J; less means that the simulation was just reset
 
 
 def read(path):
-    """Columns by name."""
+    """Reads columns by name."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     names = ("wall", "memory", "simulated", "real_time_factor", "overruns", "energy", "defect")

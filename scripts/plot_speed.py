@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws time over error as `flexarm bench speed` measured it: a panel per problem, a line per scheme.
+"""Plots results of `flexarm bench speed`, time over error: a panel for each problem, a line for each scheme.
 
 plot_speed.py DATA.csv PICTURE
 """
@@ -8,12 +8,12 @@ import csv
 
 from headless_pyplot import pyplot, run
 
-# Errors of motions that have nothing to do with each other any more; their runs say nothing.
+# Runs with larger errors say nothing, since their motions have nothing in common with the true one.
 LARGEST_ERROR = 1.0
 
 
 def read(path):
-    """Rows that have an error, by problem."""
+    """Reads rows that have an error, by problem."""
     problems = {}
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -24,7 +24,7 @@ def read(path):
 
 
 def front(rows):
-    """Runs than which none is both faster and more accurate."""
+    """The Pareto front: points of runs to which no other run is both faster and more accurate."""
     points, fastest = [], float("inf")
     for error, seconds in sorted((row["error"], row["seconds"]) for row in rows):
         if seconds < fastest and error <= LARGEST_ERROR:
@@ -34,7 +34,7 @@ def front(rows):
 
 
 def series(rows):
-    """Rows of each scheme, and of each variant of another program."""
+    """The rows of each scheme, and of each variant of another program."""
     found = {}
     for row in rows:
         if row["program"] in ("reference", "target", "public"):
@@ -45,7 +45,7 @@ def series(rows):
 
 
 def colour_of(name, is_peer, colours):
-    """A colour for each name, the same in all panels; those of other programs from another palette."""
+    """The colour for a name, the same in all panels. Other programs have another palette."""
     palette = pyplot.get_cmap("Dark2" if is_peer else "tab10").colors
     known = colours.setdefault(is_peer, [])
     if name not in known:

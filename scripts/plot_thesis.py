@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the histories of an example that `flexarm bench thesis` measured.
+"""Plots the histories of an example that `flexarm bench thesis` measured.
 
 plot_thesis.py DATA.csv PICTURE
 """
@@ -8,12 +8,12 @@ import csv
 
 from headless_pyplot import pyplot, run
 
-# A run that has blown up must not spoil the scale of the others.
+# Upper end of the axis, so that a run that has blown up does not spoil the scale for the others.
 FAR = 3.0
 
 
 def read(path):
-    """Runs by their name, each a list of rows; the names of the observables and of the defects of invariants."""
+    """Reads lists of rows by run, and the names of observables and of defects of invariants."""
     runs = {}
     with open(path, newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file)
@@ -25,7 +25,7 @@ def read(path):
 
 
 def limits(runs, name):
-    """A range that the runs which end without a large energy defect need."""
+    """The range of values in runs that end without a large energy defect, with a margin."""
     good = [rows for rows in runs.values() if max(row["energy_defect"] for row in rows) < 0.1] or list(runs.values())
     values = sorted(row[name] for rows in good for row in rows)
     low, high = values[len(values) // 500], values[-1 - len(values) // 500]

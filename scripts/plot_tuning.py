@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws speed over error of all runs that `flexarm tune` made of a scene: a colour per scheme, the best marked.
+"""Plots speed over error for all runs that `flexarm tune` made of a scene: a colour for each scheme, the best marked.
 
 plot_tuning.py DATA.csv PICTURE
 """
@@ -8,12 +8,12 @@ import csv
 
 from headless_pyplot import pyplot, run
 
-# Errors of motions that have nothing to do with each other any more; their runs say nothing.
+# Runs with larger errors say nothing, since their motions have nothing in common with the true one.
 LARGEST_ERROR = 1.0
 
 
 def read(path):
-    """Rows that came to their end and have an error."""
+    """Reads rows of runs that were completed and have an error."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if not row["failure"] and row["role"] != "reference"]
     for row in rows:
@@ -22,7 +22,7 @@ def read(path):
 
 
 def front(rows):
-    """Runs than which none is both faster and more accurate."""
+    """The Pareto front: points of runs to which no other run is both faster and more accurate."""
     points, fastest = [], 0
     for row in sorted(rows, key=lambda row: row["error"]):
         if row["times_real_time"] > fastest:

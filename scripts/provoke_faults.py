@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Lets one thing after the other go wrong around a running node, and tells in a table what became of it.
+"""Lets one thing after the other go wrong around a running node, and prints a table of what happens.
 
-scripts/faults starts it when everything is built. The ROS master is one of its own; each fault has a node of its own.
+scripts/faults starts it after everything was built. It has its own ROS master, and a separate node for each fault.
 """
 
 import argparse
@@ -38,7 +38,7 @@ JOINT = "left_shoulder"
 
 
 class Wrong(Exception):
-    """What should not have happened."""
+    """Something happened that should not happen."""
 
 
 def require(condition, what):
@@ -47,15 +47,15 @@ def require(condition, what):
 
 
 def memory_of(pid):
-    """Resident [MiB]."""
+    """Resident memory [MiB]."""
     with open(f"/proc/{pid}/status", encoding="utf-8") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("VmRSS")) / 1024
 
 
 class Node(RunningNode):
-    """A node of its own, and what it says. For a `with` block."""
+    """A separate node, its messages and its output. For a `with` block."""
 
-    # SIGXFSZ stays ignored, as on a disk without such limits.
+    # SIGXFSZ stays ignored, so that a limit of file sizes acts like a full disk: write() fails.
     process_options = {"start_new_session": True, "restore_signals": False}
 
     def __init__(self, *parameters):
@@ -100,7 +100,7 @@ class Node(RunningNode):
         wait_until(lambda: self.status.steps > before + 100, what)
 
     def said(self, text):
-        """The line of the log with that text, without colours and time."""
+        """Waits for a line with this text in the log. Returns it without colours and time."""
         found = []
 
         def look():
@@ -136,7 +136,7 @@ def command_flood(_):
     with Node() as node:
         node.wait()
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # rospy's: to send in this thread, as fast as it can, is what is wanted
+            warnings.simplefilter("ignore")  # rospy warns of blocking sends, which are intended
             flood = rospy.Publisher("/joint_force_command", JointForceCommand, queue_size=None)
         wait_until(lambda: flood.get_num_connections() > 0, "the node")
         message = JointForceCommand(names=[JOINT], efforts=[0.0])
@@ -233,7 +233,7 @@ def killed_while_saving(folder):
 
 
 def disk_full(folder):
-    """As little room as a limit of the size of files leaves."""
+    """A limit of the size of files stands for a full disk."""
     file = os.path.join(folder, "state_before")
     with Node() as node:
         node.wait()
@@ -294,7 +294,7 @@ def overload(_):
         took = time.monotonic() - begin
         require(took < 2, f"~pause took {took:.1f} s")
         return (f"as fast as it can, {factor:.1f} times real time; steps dropped and counted; "
-                f"~pause answers in {1e3 * took:.0f} ms", "nothing", node.said("slower than asked for"))
+                f"~pause answers in {1e3 * took:.0f} ms", "nothing", node.said("slower than real_time_factor"))
 
 
 def master_dies(_):
@@ -307,7 +307,7 @@ def master_dies(_):
         gone = node.said("does not answer")
         node.goes_on("steps without the master")
         Master.one.start()
-        back = node.said("registered anew")
+        back = node.said("registered again")
         heard = subprocess.run(["rostopic", "echo", "-n", "1", "/flexarm/status/time"], stdout=subprocess.PIPE,
                                stderr=subprocess.DEVNULL, timeout=PATIENCE, check=False, text=True).stdout
         require(heard.strip(), "a new subscriber hears nothing")
@@ -334,12 +334,12 @@ FAULTS = {
     "the controller dies": controller_dies,
     "a step fails": step_fails,
     "overload": overload,
-    "the master dies and comes back": master_dies,  # the last one: who asks is forgotten by it, too
+    "the master dies and comes back": master_dies,  # the last one, since the new master does not know this script
 }
 
 
 class Master:
-    """A ROS master on a port that is free."""
+    """A ROS master on a free port."""
 
     one = None
 
@@ -384,8 +384,8 @@ def table(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", action="append", choices=FAULTS, help="this fault; may be repeated")
-    parser.add_argument("--output", help="a report, in Markdown")
+    parser.add_argument("--only", action="append", choices=FAULTS, help="only this fault; may be given several times")
+    parser.add_argument("--output", help="file for the report, in Markdown")
     arguments = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder, Master():
@@ -394,14 +394,14 @@ def main():
             print(name, "...", flush=True)
             try:
                 rows.append((name, True, FAULTS[name](folder)))
-            except Exception as error:  # whatever it is, the others have their turn
+            except Exception as error:  # after any error the other faults are still tested
                 rows.append((name, False, (f"{type(error).__name__}: {error}", "", "")))
     print(table(rows))
     if arguments.output:
         with open(arguments.output, "w", encoding="utf-8") as report:
             report.write(REPORT.format(table(rows)))
     sys.stdout.flush()
-    os._exit(0 if all(is_survived for _, is_survived, _ in rows) else 1)  # rospy would wait for its master
+    os._exit(0 if all(is_survived for _, is_survived, _ in rows) else 1)  # rospy's exit would wait for its master
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Prints what the parameter robot_description is to be: the text of a scene file.
+"""Prints the text of a scene file, for the parameter robot_description.
 
 robot_description.py FILE [NAME=VALUE...]
 
-A file *.xacro is expanded by xacro with these arguments where that is installed; where it is not, the simulator says
-what to do. Other words are passed over. What cannot be read is named by its whole path, with the reason.
+A file *.xacro is expanded by xacro with these arguments if xacro is installed; if not, the simulator says what to do.
+Other words are ignored. If the file cannot be read, its full path and the reason are printed.
 """
 
 import os

@@ -3,16 +3,16 @@
 
 show_in_rviz.py [RVIZ-ARGUMENT...]
 
-Fixed frame, camera and grid follow the simulator's parameters flexarm/view/..., the displays those of
-config/flexarm.rviz. What rviz draws of the URDF are the rigid links only: the <visual> of a flexible link would stay
-straight beside the bent beam. Their description is the parameter rigid_links_description. Where nothing has a shape,
-the frames are shown.
+Fixed frame, camera and grid follow the simulator's parameters flexarm/view/...; the displays are those of
+config/flexarm.rviz. Of the URDF, rviz draws only the rigid links, since the <visual> of a flexible link would stay
+straight beside the bent beam. For this, the parameter rigid_links_description gets a URDF without those. If no link has
+a shape, the frames are shown.
 """
 
 import signal
 
-# roslaunch ends it by this signal if the simulator dies at its start, which has said why. That may be while modules are
-# imported below.
+# If the simulator dies at its start, roslaunch ends this script with SIGINT. No traceback should follow the simulator's
+# message, not even if that happens during the imports below.
 signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 import math
@@ -29,12 +29,12 @@ import yaml
 TEMPLATE = "config/flexarm.rviz"
 PATIENCE = 30.0  # s, wall time
 # In radii of the scene:
-DISTANCE = 3.6  # of the camera, which sees 45 degrees
-LEGEND = 0.25  # by which the camera looks past the centre, towards the legend
+DISTANCE = 3.6  # of the camera from the centre; its angle of view is 45 degrees
+LEGEND = 0.25  # how far the camera looks past the centre, towards the legend
 
 
 def wait_for_view():
-    """What the simulator says about the scene: frame, center [m], radius [m]."""
+    """Waits for the simulator's parameters on the view: frame, center [m], radius [m]."""
     end = time.monotonic() + PATIENCE
     while not rospy.has_param("flexarm/view/radius"):  # set last
         if time.monotonic() > end:
@@ -54,13 +54,13 @@ def rigid_links(description):
 
 
 def has_shape(description):
-    """Whether rviz can draw anything of it but its frames."""
+    """Whether rviz can draw more of the robot than its frames."""
     robot = xml.etree.ElementTree.fromstring(description)
     return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam"))
 
 
 def fit(config, view, prefix, description, interactive=False):
-    """Fills the scene's frame, place and size, and whether links have handles, into a configuration of rviz."""
+    """Sets the scene's frame, place and size, and whether links have handles, in a configuration of rviz."""
     radius = view["radius"]
     manager = config["Visualization Manager"]
     manager["Global Options"]["Fixed Frame"] = view["frame"]
@@ -76,7 +76,7 @@ def fit(config, view, prefix, description, interactive=False):
     displays["rviz/RobotModel"]["TF Prefix"] = prefix.rstrip("/")
     handles = displays["rviz/InteractiveMarkers"]
     handles["Enabled"] = handles["Value"] = interactive
-    # rviz resolves the topics of other displays by its namespace, but not this one.
+    # For the other displays, rviz resolves topics by its namespace, but not for this one.
     handles["Update Topic"] = rospy.resolve_name(handles["Update Topic"])
     return config
 
@@ -91,7 +91,7 @@ def main():
     with open(os.path.join(rospkg.RosPack().get_path("flexarm"), TEMPLATE), encoding="utf-8") as file:
         config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""), description,
                      rospy.get_param("flexarm/interactive", False))
-    # Kept, because rviz takes this process's place, and under one name for each arm, so that they do not pile up.
+    # The file must stay, because rviz replaces this process. One name per arm keeps such files from piling up.
     name = "flexarm" + rosgraph.names.get_ros_namespace().replace("/", "_").rstrip("_") + ".rviz"
     path = os.path.join(rospkg.get_ros_home(), name)
     with open(path, "w", encoding="utf-8") as file:
@@ -103,4 +103,4 @@ if __name__ == "__main__":
     try:
         main()
     except (OSError, rospy.ROSException) as error:
-        sys.exit("show_in_rviz.py: %s" % error)  # the master is gone, or there is no rviz
+        sys.exit("show_in_rviz.py: %s" % error)  # the master is gone, or rviz is not installed

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Runs the demo's arm under random commands; watches memory, speed, energy and every published number.
+"""Runs the demo's arm with random commands; watches memory, speed, energy and all published numbers.
 
-scripts/soak starts it when everything is built. The ROS master is one of its own.
+scripts/soak starts it after everything was built. It has its own ROS master.
 """
 
 import argparse
@@ -32,14 +32,14 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
-PATIENCE = 30.0  # s, wall time, for processes to start and to end
+PATIENCE = 30.0  # s, wall time for processes to start and to end
 LONGEST_COMMAND = 3.0  # s, simulated time
 LONGEST_WAIT, LONGEST_PAUSE = 0.5, 1.0  # s, wall time
-BAG_SIZE, BAGS = 64, 4  # MB of each of the bags that are kept
+BAG_SIZE, BAGS = 64, 4  # size of a bag [MB], and number of bags that are kept
 
 
 def efforts_of(scene):
-    """The largest effort of every joint that has one [N m]."""
+    """The effort limit of each joint that has one [N m]."""
     joints = xml.etree.ElementTree.parse(scene).findall("joint")
     return {joint.get("name"): float(joint.find("limit").get("effort")) for joint in joints
             if joint.find("limit") is not None}
@@ -47,7 +47,7 @@ def efforts_of(scene):
 
 @contextlib.contextmanager
 def process(command, log, **options):
-    """A program in a session of its own, so that Ctrl-C reaches this script alone, which then ends the program."""
+    """A program in a session of its own: Ctrl-C reaches only this script, which then ends the program."""
     with open(log, "w", encoding="utf-8") as file:
         child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
                                  start_new_session=True, **options)
@@ -63,7 +63,7 @@ def process(command, log, **options):
 
 @contextlib.contextmanager
 def display():
-    """Name of a display that nobody sees."""
+    """Starts an invisible display. Yields its name."""
     reader, writer = os.pipe()
     server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
                               pass_fds=[writer], stderr=subprocess.DEVNULL, start_new_session=True)
@@ -77,7 +77,7 @@ def display():
 
 
 class Operator:
-    """Sends what comes to its mind: efforts to some joints, nonsense, and calls of every service."""
+    """Sends random efforts and invalid commands, and calls all services."""
 
     def __init__(self, efforts, seed):
         self.efforts = efforts
@@ -90,17 +90,17 @@ class Operator:
         self.step = rospy.ServiceProxy("flexarm/step", Step)
 
     def run(self):
-        """Until the process ends."""
+        """Acts until the process ends."""
         acts = [self.send_efforts, self.send_nonsense, self.call_pause, self.call_reset, self.press_emergency_stop]
         while True:
             time.sleep(self.random.uniform(0, LONGEST_WAIT))
-            with contextlib.suppress(rospy.ServiceException):  # the node says why in its status, or is no more
+            with contextlib.suppress(rospy.ServiceException):  # the node's status has the reason, or the node has ended
                 self.random.choices(acts, weights=[100, 5, 4, 3, 2])[0]()
 
     def send_efforts(self):
         names = self.random.sample(sorted(self.efforts), self.random.randint(1, len(self.efforts)))
         efforts = [self.random.uniform(-1, 1) * self.efforts[name] for name in names]
-        # Without a duration it holds until the next command.
+        # Without a duration, an effort holds until the next command.
         duration = self.random.choice([0, self.random.uniform(0, LONGEST_COMMAND)])
         self.commands.publish(names=names, efforts=efforts, duration=rospy.Duration.from_sec(duration))
         self.counts["efforts"] += 1
@@ -134,7 +134,7 @@ class Operator:
 
 
 class Observer:
-    """Looks at what the node publishes, and at the node itself."""
+    """Observes what the node publishes, and its process."""
 
     def __init__(self):
         self.status = rospy.wait_for_message("flexarm/status", SimulatorStatus, PATIENCE)
@@ -150,7 +150,7 @@ class Observer:
         for topic, kind in topics.items():
             rospy.Subscriber(topic, kind, self.check, topic, queue_size=100)
         rospy.Subscriber("flexarm/status", SimulatorStatus, self.receive_status, queue_size=100)
-        # Thousands of points in each: kept as they come, one a second is looked at.
+        # Markers have thousands of points, so they are stored unparsed, and only one a second is examined.
         rospy.Subscriber("beam_markers", rospy.AnyMsg, self.receive_markers, queue_size=1, buff_size=1 << 24)
 
     def check(self, message, topic):
@@ -167,7 +167,7 @@ class Observer:
         self.markers = message
 
     def sample(self):
-        """The last second; None if the node is no more."""
+        """A Sample of the last second; None if the node has ended."""
         memory = resident_memory(self.pid)
         if memory is None:
             return None
@@ -183,9 +183,9 @@ class Observer:
 
 
 def pid_of(node):
-    """Of a node that runs.
+    """The process id of a running node.
 
-    @throws rosgraph.MasterException, OSError if it does not
+    Raises rosgraph.MasterException or OSError if the node does not run.
     """
     address = rosgraph.Master(rospy.get_name()).lookupNode(node)
     _, _, pid = xmlrpc.client.ServerProxy(address).getPid(rospy.get_name())
@@ -193,7 +193,7 @@ def pid_of(node):
 
 
 def resident_memory(pid):
-    """[MiB]; None where there is no such process, or only what is left of it."""
+    """Resident memory [MiB]; None if the process does not exist or is a zombie."""
     try:
         with open(f"/proc/{pid}/status", encoding="utf-8") as file:
             lines = dict(line.split(":", 1) for line in file)
@@ -203,7 +203,7 @@ def resident_memory(pid):
 
 
 def memory_of_rviz():
-    """[MiB]; "none" where it does not run."""
+    """Resident memory [MiB], as text; "none" if rviz does not run."""
     try:
         return f"{resident_memory(pid_of('/rviz')):.0f}"
     except (rosgraph.MasterException, OSError):
@@ -217,7 +217,7 @@ def free_port():
 
 
 def observe(observer, seconds):
-    """Samples, one a second, until the time is over or the node is no more."""
+    """Takes a sample each second, until the time is over or the node has ended."""
     samples = []
     while len(samples) < seconds:
         time.sleep(max(0.0, observer.start + len(samples) + 1 - time.monotonic()))
@@ -234,7 +234,7 @@ def observe(observer, seconds):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=float, default=10, help="wall time")
-    parser.add_argument("--seed", type=int, default=1, help="of the random commands")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random commands")
     parser.add_argument("--no-rviz", action="store_true")
     parser.add_argument("--output", default=os.path.join(ROOT, "docs", "reports", "soak"),
                         help="path of table, report and picture, without .csv, .md and .png")
@@ -270,7 +270,8 @@ def main():
         died = observer.sample() is None or demo.poll() is not None
         conditions = {"seed": arguments.seed, "resident memory of rviz beside it [MiB]": memory_of_rviz(),
                       f"last bags, {BAGS} of {BAG_SIZE} at most [MB]": recorded // 10**6}
-        rospy.signal_shutdown("done")
+        with contextlib.suppress(AttributeError):  # rospy of Debian 11 calls Thread.isAlive()
+            rospy.signal_shutdown("done")
     faults = write_report(arguments.output, samples, operator.counts, observer, died, conditions)
     draw = os.path.join(ROOT, "scripts", "plot_soak.py")
     subprocess.run([draw, arguments.output + ".csv", arguments.output + ".png"], check=True)

@@ -1,12 +1,12 @@
-"""What scripts/soak makes of its samples: judgement, table, text."""
+"""Evaluates the samples of scripts/soak: verdict, table, text."""
 
 import csv
 import math
 import os
 from dataclasses import asdict, dataclass, fields
 
-WARM_UP = 0.1  # of the run: caches fill, and rviz and the bag connect
-LARGEST_GROWTH = 3.0  # MiB after the warm-up: less than ten minutes of 64 bytes lost with each message of 100 Hz
+WARM_UP = 0.1  # fraction of the run in which caches fill, and rviz and the bag connect
+LARGEST_GROWTH = 3.0  # MiB after the warm-up; a leak of 64 bytes per message at 100 Hz makes more in ten minutes
 
 
 @dataclass
@@ -15,22 +15,22 @@ class Sample:
 
     wall: float  # since the start [s]
     memory: float  # resident [MiB]
-    simulated: float  # all steps since the start, resets or not [s]
+    simulated: float  # time of all steps since the start, including those before resets [s]
     real_time_factor: float
     paused: bool
     overruns: int
     iterations: int  # of the last step
     halvings: int  # since the start
-    other_guesses: int  # sub-steps solved from another guess than the first, since the start
+    other_guesses: int  # sub-steps that converged from another initial guess than the first one, since the start
     energy: float  # kinetic and strain [J]
     work: float  # since the last reset [J]
     dissipated: float  # since the last reset [J]
-    defect: float  # largest change of total - work + dissipated since the last reset, of this second [J]
-    error: str  # of the last step; empty if it was made
+    defect: float  # largest change of total - work + dissipated since the last reset, within this second [J]
+    error: str  # of the last step; empty if the step succeeded
 
 
 class EnergyAccount:
-    """total - work + dissipated beside what it was at the start or the last reset."""
+    """Tracks the change of total - work + dissipated since the start or the last reset."""
 
     def __init__(self):
         self.time = math.inf
@@ -39,19 +39,19 @@ class EnergyAccount:
 
     def add(self, status):
         account = status.total_energy - status.work + status.dissipated
-        if status.time < self.time:  # the first, or a reset
+        if status.time < self.time:  # the first status, or a reset
             self.start = account
         self.time = status.time
         self.largest = max(self.largest, abs(account - self.start))
 
     def take_largest(self):
-        """Since this was last asked."""
+        """The largest change since the last call of this function."""
         largest, self.largest = self.largest, 0.0
         return largest
 
 
 def is_finite(value):
-    """Whether every number of a message is."""
+    """Whether all numbers of a message are finite."""
     if isinstance(value, float):
         return math.isfinite(value)
     if isinstance(value, (list, tuple)):
@@ -64,13 +64,13 @@ def after_warm_up(samples):
 
 
 def growth(samples):
-    """Of the memory, after the warm-up [MiB]."""
+    """Growth of the memory after the warm-up [MiB]."""
     steady = after_warm_up(samples)
     return max(sample.memory for sample in steady) - steady[0].memory
 
 
 def trend(samples):
-    """Of the memory after the warm-up, by least squares [MiB/h]."""
+    """Trend of the memory after the warm-up, by least squares [MiB/h]."""
     steady = after_warm_up(samples)
     wall = sum(sample.wall for sample in steady) / len(steady)
     spread = sum((sample.wall - wall) ** 2 for sample in steady)
@@ -78,7 +78,7 @@ def trend(samples):
 
 
 def find_faults(samples, not_finite, failures, died):
-    """What must not happen, and did."""
+    """A list of everything that happened and must not happen."""
     faults = [f"{count} messages on {topic} with numbers that are not finite" for topic, count in not_finite.items()]
     faults += [f"a step failed: {message}" for message in failures]
     if died:
@@ -91,9 +91,9 @@ def find_faults(samples, not_finite, failures, died):
 
 
 def rows(samples, counts, conditions):
-    """Pairs of the table."""
+    """Yields the rows of the table as pairs."""
     steady, last = after_warm_up(samples), samples[-1]
-    # While it is paused, and until it is measured after that, the factor is 0.
+    # The factor is 0 while the simulation is paused, and until it is measured again.
     running = [sample.real_time_factor for sample in steady if sample.real_time_factor > 0] or [0.0]
     largest_energy = max(sample.energy for sample in samples)
     defect = max(sample.defect for sample in samples)
@@ -110,7 +110,7 @@ def rows(samples, counts, conditions):
     yield "iterations of the steps seen: mean, most", (
         f"{sum(sample.iterations for sample in samples) / len(samples):.2f}, "
         f"{max(sample.iterations for sample in samples)}")
-    yield "halvings, sub-steps from another guess", f"{last.halvings}, {last.other_guesses}"
+    yield "halvings, sub-steps from another initial guess", f"{last.halvings}, {last.other_guesses}"
     yield "largest kinetic and strain energy [J]", f"{largest_energy:.4g}"
     yield "largest work since a reset [J]", f"{max(abs(sample.work) for sample in samples):.4g}"
     yield "largest change of total - work + dissipated [J]", f"{defect:.1e}"
@@ -129,7 +129,7 @@ not grow by more than {largest_growth:g} MiB after the warm-up, the first {warm_
 
 
 def write_report(path, samples, counts, observer, died, conditions):
-    """Writes PATH.csv and PATH.md; the faults."""
+    """Writes PATH.csv and PATH.md. Returns the faults."""
     faults = find_faults(samples, observer.not_finite, observer.failures, died)
     with open(path + ".csv", "w", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, [field.name for field in fields(Sample)])

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Shows the state of a running simulation: one line that changes on a terminal, a line a second anywhere else.
+"""Shows the state of a running simulation: one line that is updated on a terminal, else a new line each second.
 
-status_line.py [--duration SECONDS]: ends after so much simulated time. Exit status 1 if the simulation fails, or if
-nothing is heard of it for 20 s.
+status_line.py [--duration SECONDS]: ends after this simulated time. The exit status is 1 if the simulation fails, or if
+it sends nothing for 20 s.
 """
 
 import argparse
@@ -60,7 +60,7 @@ class StatusLine:
 
     def run(self):
         while not self.ended.wait(0.2) and not rospy.is_shutdown():
-            # A paused simulation is silent, too; only one that never spoke is missing.
+            # A paused simulation is silent, too. Only one that has never sent anything counts as missing.
             if self.last_shown == 0 and time.monotonic() - self.last_heard > PATIENCE and not self.is_alive():
                 print("nothing is heard of the simulation", file=sys.stderr)
                 return 1

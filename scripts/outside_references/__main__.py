@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""References of `flexarm bench accuracy` that are not flexarm's: equations written from its documentation, by scipy.
+"""Computes references for `flexarm bench accuracy` without flexarm: equations from its documentation, solved by scipy.
 
 outside_references --output FOLDER [--only TEXT]      writes scenes and their motions
-outside_references --judge SCENE.urdf [--until 2]     the true errors of one scene, run by flexarm
+outside_references --judge SCENE.urdf [--until 2]     runs a scene in flexarm, and prints the true errors
 """
 
 import argparse
@@ -21,21 +21,21 @@ from motion import TOLERANCE, Motion
 from scenes import all_scenes
 
 INTERVALS = 100
-BAD = 1e-9  # of how far points come: a reference whose two runs differ by more is refused
+BAD = 1e-9  # relative to how far points move: if two runs of a reference differ by more, the reference is refused
 COLUMNS = ["file", "group", "name", "cornered", "until", "intervals", "disagreement", "events", "reference"]
 
 
 class BadReference(RuntimeError):
-    """Two runs of it do not agree."""
+    """Two runs of a reference do not agree."""
 
 
 def scale(points):
-    """How far the points come from where they start [m]."""
+    """The largest distance of the points from their initial positions [m]."""
     return np.linalg.norm(points - points[0], axis=2).max()
 
 
 def difference(points, reference):
-    """As flexarm's motion_error(): root mean square over time, trapezoidal rule, of the worst point, relative."""
+    """The relative error as in flexarm's motion_error(): the worst point's root mean square over time."""
     squares = ((points - reference) ** 2).sum(axis=2)
     squares[0] *= 0.5
     squares[-1] *= 0.5
@@ -43,7 +43,7 @@ def difference(points, reference):
 
 
 def reference(text, until, intervals=INTERVALS):
-    """(times, positions (times, points, 3), disagreement of both runs, corners that were met)."""
+    """Returns (times, positions (times, points, 3), difference of two runs, number of corners on the way)."""
     motion = Motion(text, until)
     times = np.linspace(0, until, intervals + 1)
     points = motion.run(times)
@@ -60,7 +60,7 @@ def file_name(scene):
 
 
 def write(folder, scene):
-    """A line of the index."""
+    """Writes the files of a scene. Returns its line for the index."""
     stem = file_name(scene)
     with open(os.path.join(folder, stem + ".urdf"), "w", encoding="utf-8") as file:
         file.write(scene.text)
@@ -102,7 +102,7 @@ def default_program():
 
 
 def simulated(program, path, until, options):
-    """(probes' positions of a run of flexarm, what it says)."""
+    """Runs flexarm. Returns (positions of the probes, its output)."""
     with tempfile.TemporaryDirectory() as folder:
         output = os.path.join(folder, "run.csv")
         run = subprocess.run([program, "simulate", path, "--until", repr(until), "--output", output, *options],
@@ -133,7 +133,7 @@ def judge(arguments):
             print(f"{option} {value}: no such run: {last}")
             continue
         error = difference(found, points)
-        ratio = f", {error / float(value):.3g} times what was asked" if option == "--accuracy" else ""
+        ratio = f", {error / float(value):.3g} times the requested one" if option == "--accuracy" else ""
         line = next((line for line in said.splitlines() if "accuracy" in line or "error" in line), last)
         print(f"{option} {value}: true error {error:.3e}{ratio}; {line.strip()}")
     return 0
@@ -142,15 +142,15 @@ def judge(arguments):
 def main():
     parser = argparse.ArgumentParser(prog="outside_references", description=__doc__.splitlines()[0])
     parser.add_argument("--output", help="folder for scenes, motions and their index.csv")
-    parser.add_argument("--only", default="", help="scenes with this in 'GROUP: NAME'")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
-    parser.add_argument("--list", action="store_true", help="names of the scenes")
-    parser.add_argument("--judge", metavar="SCENE.urdf", help="a scene that flexarm runs, and its true errors")
-    parser.add_argument("--until", type=float, default=2.0, help="of the judged run [s]")
+    parser.add_argument("--only", default="", help="only scenes with this text in 'GROUP: NAME'")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="number of processes")
+    parser.add_argument("--list", action="store_true", help="prints the names of the scenes")
+    parser.add_argument("--judge", metavar="SCENE.urdf", help="runs a scene by flexarm and prints its true errors")
+    parser.add_argument("--until", type=float, default=2.0, help="end of the judged run [s]")
     parser.add_argument("--accuracy", type=float, nargs="+", default=[1e-2, 1e-3, 1e-4, 1e-5])
     parser.add_argument("--step", type=float, nargs="+", default=[], help="fixed steps instead of accuracies [s]")
-    parser.add_argument("--scheme", help="of the judged run")
-    parser.add_argument("--program", default=default_program(), help="flexarm")
+    parser.add_argument("--scheme", help="scheme of the judged run")
+    parser.add_argument("--program", default=default_program(), help="path of flexarm")
     arguments = parser.parse_args()
     try:
         if arguments.list:

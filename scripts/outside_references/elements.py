@@ -1,8 +1,8 @@
-"""Forces on the coordinates of a mechanism: the laws of docs/scene_format.md, docs/theory/joints.md,
-docs/notes/stops.md and docs/notes/drives.md in continuous time.
+"""Forces on the coordinates of a mechanism, by the laws of docs/scene_format.md, docs/theory/joints.md,
+docs/notes/stops.md and docs/notes/drives.md, in continuous time.
 
-Each element is smooth between zeros of its switches. It is told the sign that each switch has in the present piece, so
-that it is smooth beyond the end of the piece, too.
+Each element has switches, functions that change sign where its law is not smooth. During an interval between two
+corners, the element keeps the signs of its switches at the start, so that its law is smooth also beyond the end.
 """
 
 import math
@@ -10,11 +10,11 @@ import math
 import time_functions
 from mechanism import Refused, number, numbers
 
-CREEP = 1e-3  # of the smooth law of friction [rad/s or m/s]
+CREEP = 1e-3  # transition velocity of the smooth law of friction [rad/s or m/s]
 
 
 class Element:
-    """`extras`: states of its own. `held`: signs of its switches, 1 or -1."""
+    """An element. `extras`: number of own states. `held`: signs of its switches in the present interval, 1 or -1."""
 
     extras = 0
     functions = ()
@@ -27,10 +27,10 @@ class Element:
         return []
 
     def act(self, s, efforts, rates):
-        """Adds to `efforts` on the coordinates, writes `rates` of its own states, which are s.own(self)."""
+        """Adds to `efforts` on the coordinates, and writes the `rates` of the own states, which are s.own(self)."""
 
     def sample(self, s):
-        """At a sample of its own."""
+        """Takes a sample, at the element's own sampling times."""
 
 
 class Passive(Element):
@@ -47,10 +47,10 @@ class Passive(Element):
 
 
 def restitution_of(ratio):
-    """Of a linear oscillator with that damping ratio that is let go at x = 0, v = 1 and leaves when its force vanishes.
+    """The restitution of a linear oscillator with this damping ratio: starts at x = 0, v = 1, and ends at zero force.
 
-    With frequency 1, x = exp(-z t) sin(w t)/w, and x + 2 z v = 0 at the first tan(w t) = 2 z w / (2 z^2 - 1); with
-    z > 1 the same of the hyperbolic functions."""
+    With frequency 1, x = exp(-z t) sin(w t)/w. The force x + 2 z v is 0 first at tan(w t) = 2 z w / (2 z^2 - 1). For
+    z > 1, hyperbolic functions replace the circular ones."""
     w = max(math.sqrt(abs(1 - ratio ** 2)), 1e-6)
     if ratio < 1:
         t = math.atan2(2 * ratio * w, 2 * ratio ** 2 - 1) / w
@@ -60,7 +60,7 @@ def restitution_of(ratio):
 
 
 class Stop(Element):
-    """Both stops of a coordinate (notes/stops.md 2): switches are the penetration and the force of each."""
+    """Both stops of a coordinate (notes/stops.md 2). The switches are penetration and force of each stop."""
 
     def __init__(self, j, lower, upper, restitution, inertia, step, start):
         self.j, self.bounds = j, ((1, upper), (-1, lower))
@@ -98,7 +98,7 @@ class Stop(Element):
 
 
 class PointSpring(Element):
-    """Along the line between two points, with a damper beside it."""
+    """A spring along the line between two points, with a parallel damper."""
 
     def __init__(self, mechanism, element, q):
         self.mechanism = mechanism
@@ -108,7 +108,7 @@ class PointSpring(Element):
         self.rest = number(element, "rest_length", self._line(mechanism.place(q, [0.0] * mechanism.n))[0])
 
     def _line(self, frames):
-        """Its length, and the derivatives of that."""
+        """The length, and its derivatives with respect to the coordinates."""
         (a, at_a, height_a), (b, at_b, height_b) = self.ends
         ra, ja, _ = self.mechanism.point(frames[a], at_a)
         rb, jb, _ = self.mechanism.point(frames[b], at_b)
@@ -145,7 +145,7 @@ class Load(Element):
 
 
 class Motor(Element):
-    """Effort, servo and drive of one coordinate, cut at the smallest limit."""
+    """The effort of a coordinate with servo and drive, cut off at the smallest limit."""
 
     def __init__(self, j, effort, servo, drive, limit, q0):
         self.j, self.servo, self.drive = j, servo, drive
@@ -186,7 +186,7 @@ class Motor(Element):
         self.functions = self.functions + [self.set_point, self.feedforward]
         self.period, self.delay = number(servo, "sample_time", 0.0), number(servo, "delay", 0.0)
         self.has_integral = self.period == 0 and self.ki > 0
-        self.outputs = []  # (from, value) of samples
+        self.outputs = []  # (time from which it acts, value) of each sample
         self.last, self.sum, self.last_set = q0, 0.0, None
 
     def start(self, q, v):
@@ -238,7 +238,7 @@ class Motor(Element):
         self.last, self.last_set = y, set_point
 
     def _bounds(self, s):
-        """Lowest and highest effort; held signs say where on the line of torque and speed the motor is."""
+        """Lowest and highest effort. The held signs say on which part of the torque-speed line the motor is."""
         if math.isinf(self.no_load):
             return -self.limit, self.limit
         rate = self._rate(s)
@@ -291,7 +291,7 @@ class Motor(Element):
 
 
 class Coulomb:
-    """Dry friction that sticks: `state` 0, or the sign of the sliding. The load that it holds is `hold`."""
+    """Dry friction that sticks. `state`: 0 while it sticks, else the sign of the sliding velocity."""
 
     def __init__(self, j, capacity):
         self.j, self.capacity, self.state = j, capacity, 0

@@ -1,7 +1,7 @@
 """Scenes of rigid links that move in a plane (or along its normal), read from URDF, and their equations of motion.
 
-Of what docs/scene_format.md describes, a part is read; everything else is refused, so that no reference leaves out a
-force without a word. Coordinates are those of the joints; loops are held by accelerations of constraints.
+Only a part of docs/scene_format.md is supported. Everything else is refused, so that no force is left out silently. The
+coordinates are those of the joints. Loops are closed by constraints on accelerations.
 """
 
 import cmath
@@ -13,7 +13,7 @@ import time_functions
 
 
 class Refused(ValueError):
-    """What is not read here."""
+    """The scene contains something that is not supported here."""
 
 
 def numbers(text, count=3):
@@ -28,7 +28,7 @@ def number(element, name, default=None):
 
 
 class Joint:
-    """`kind`: turn, slide, rise (along the normal) or screw; `sign` of a turn, `direction` of a slide in the plane."""
+    """`kind`: turn, slide, rise (along the normal) or screw. `sign`: of a turn. `direction`: of a slide."""
 
     def __init__(self, element, plane):
         self.name, self.type = element.get("name"), element.get("type")
@@ -65,7 +65,7 @@ class Joint:
 class Plane:
     def __init__(self, normal):
         self.normal = normal / np.linalg.norm(normal)
-        # The first axis that lies in the plane.
+        # The first coordinate axis that lies in the plane.
         self.x = next(e for e in np.eye(3) if abs(e @ self.normal) < 1e-12)
         self.y = np.cross(self.normal, self.x)
 
@@ -95,7 +95,7 @@ class Link:
 
 
 class Mechanism:
-    """Kinematics: of each link the origin, the angle, the height over the plane, and their Jacobians."""
+    """Kinematics: for each link the origin, the angle, the height above the plane, and their Jacobians."""
 
     def __init__(self, text):
         root = ElementTree.fromstring(text)
@@ -145,8 +145,9 @@ class Mechanism:
         return element.find("parent").get("link"), at[0], element.find("child").get("link"), at[1]
 
     def place(self, q, v):
-        """Of each link (origin, turn, height, J of the origin, J of the angle, J of the height, bias acceleration, rate
-        of the angle). Vectors of the plane are complex numbers, Jacobians lists: numpy is slow with so few numbers."""
+        """For each link (origin, rotation, height, J of the origin, J of the angle, J of the height, bias acceleration,
+        angular velocity). Vectors in the plane are complex numbers and Jacobians are lists, since numpy is slow for few
+        numbers."""
         zeros = [0.0] * self.n
         frames = {self.base: (0j, 1 + 0j, 0.0, zeros, zeros, zeros, 0j, 0.0)}
         for joint in self.joints:
@@ -178,7 +179,7 @@ class Mechanism:
         return r + arm, [a + 1j * arm * b for a, b in zip(jr, jphi)], bias - w * w * arm
 
     def equations(self, q, v):
-        """M, the efforts of inertia and gravity, and the loops' constraints: M a = force, J a = right."""
+        """M, generalised forces of inertia and gravity, and the constraints of loops, for M a = force, J a = right."""
         frames, n = self.place(q, v), self.n
         mass, force = [[0.0] * n for _ in range(n)], [0.0] * n
         for link in self.massive:
@@ -205,7 +206,7 @@ class Mechanism:
                 for a, at, b, other in self.loops]
 
     def positions(self, q):
-        """Of the probes, in the world [m]."""
+        """Positions of the probes in the world [m]."""
         frames = self.place(q, [0.0] * self.n)
         return np.array([self.plane.join(self.point(frames[link], flat)[0], frames[link][2] + height)
                          for link, flat, height in self.probes])

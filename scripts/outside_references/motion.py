@@ -1,25 +1,29 @@
-"""The motion of a scene: pieces between corners by scipy's DOP853, corners that are met located in time.
+"""The motion of a scene: integrates intervals between corners with scipy's DOP853, and locates corners in time.
 
-Judged times are ends of pieces, so that no interpolation takes part in what is given back.
+Judged times are ends of intervals, so that results contain no interpolation.
 """
 
 import math
 
 import numpy as np
-from scipy.integrate import DOP853
 from scipy.optimize import brentq
+
+try:
+    from scipy.integrate import DOP853 as RungeKutta
+except ImportError:  # before scipy 1.4: of order 5 instead of 8, so with more steps
+    from scipy.integrate import RK45 as RungeKutta
 
 import time_functions
 from elements import Coulomb, Load, Motor, Passive, PointSpring, Stop
 from mechanism import Mechanism, Refused, number
 
 TOLERANCE = 1e-12
-PARTS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0)  # of a step, where switches are looked at
-SAME = 1e-13  # of a time: how far from the ends of a piece functions of time are evaluated
+PARTS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0)  # of a step: places where the signs of switches are checked
+SAME = 1e-13  # relative to the time: distance from the ends of an interval at which functions of time are evaluated
 
 
 class Snapshot:
-    """What elements see: time, coordinates, rates, their own states."""
+    """What elements see: time, coordinates, rates, and their own states."""
 
     def __init__(self, motion, t, y):
         self.t, self.piece, self.slices = t, motion.piece, motion.slices
@@ -57,13 +61,13 @@ class Motion:
     # ---- reading
 
     def _read_constraints(self):
-        """q = T z + c(t): what is prescribed, and what follows another coordinate."""
+        """Sets up q = T z + c(t), with the free coordinates z, for prescribed motions and for mimics."""
         m = self.mechanism
         self.motions = m.function_entries("motion", "position")
         followers = {m.index[j.name]: j.element.find("mimic") for j in m.moving if j.element.find("mimic") is not None}
         self.free = [i for i in range(m.n) if i not in self.motions and i not in followers]
         self.T, self.offset = np.zeros((m.n, len(self.free))), np.zeros(m.n)
-        self.carried = np.zeros((m.n, m.n))  # motions of those that are followed
+        self.carried = np.zeros((m.n, m.n))  # maps prescribed motions to the coordinates, including followers
         for k, i in enumerate(self.free):
             self.T[i, k] = 1
         for i in self.motions:
@@ -140,7 +144,7 @@ class Motion:
                                           self.q0[j]))
 
     def _pressed(self, joint, law):
-        """Friction by the force normal to a slide: where nothing turns on it, that is a part of the weight."""
+        """Friction due to the normal force on a slide. If no joint hangs on it, this force is a part of the weight."""
         coefficient = number(law, "coefficient", 0.0)
         if coefficient == 0:
             return 0.0
@@ -153,7 +157,7 @@ class Motion:
     def _find_corners(self):
         functions = [f for e in self.elements for f in e.functions] + list(self.motions.values())
         self.corners = sorted({t for f in functions for t in time_functions.corners(f, self.until)})
-        self.samples = {}  # time: indices of elements
+        self.samples = {}  # by time: indices of elements
         for element in self.elements:
             if isinstance(element, Motor) and element.period > 0:
                 which = self.elements.index(element)
@@ -179,7 +183,7 @@ class Motion:
         return (self.T @ y[:n] + c).tolist(), (self.T @ y[n:2 * n] + d).tolist(), dd
 
     def solve(self, s):
-        """Rates of the state, and what dry friction holds for each that sticks."""
+        """The rates of the state, and the friction efforts of the coordinates that stick."""
         m, n = self.mechanism, len(self.free)
         s.frames, mass, force, rows, right = m.equations(s.q, s.v)
         rates = [0.0] * len(s.y)
@@ -213,7 +217,7 @@ class Motion:
         return rates, {f: -h for f, h in zip(sticking, held)}
 
     def _reduced(self, mass, force, rows, right, bias):
-        """The same in the free coordinates, where motions are prescribed or followed."""
+        """The same equations in the free coordinates, for prescribed motions and mimics."""
         mass = np.array(mass) + np.diag(self.armature)
         rows = np.array(rows).reshape(-1, self.mechanism.n)
         return ((self.T.T @ mass @ self.T).tolist(), (self.T.T @ (force - mass @ bias)).tolist(),
@@ -225,7 +229,7 @@ class Motion:
     # ---- switches
 
     def switch_values(self, t, y):
-        """Each times the sign it has in this piece: above 0 until the piece ends."""
+        """Values of all switches, each times its sign in this interval: they are above 0 until the interval ends."""
         s, found = Snapshot(self, t, y), []
         for element in self.elements:
             found += [sign * value for sign, value in zip(element.held, element.switches(s))]
@@ -244,8 +248,8 @@ class Motion:
             self._stick_or_slip(friction, t, y)
 
     def _stick_or_slip(self, friction, t, y):
-        """At rest it slides on in a direction in which it is accelerated in spite of the friction there, else it
-        sticks. (At a dead point of a loop nothing could hold it, and none is asked to.)"""
+        """Decides about a coordinate at rest. If it accelerates in one direction in spite of friction, it slides, else
+        it sticks. (At a dead point of a loop no effort could hold it, but none is required.)"""
         if Snapshot(self, t, y).v[friction.j] != 0:
             return
         row = len(self.free) + self.free.index(friction.j)
@@ -255,7 +259,7 @@ class Motion:
         friction.state = 0
 
     def pass_switch(self, which, t, y):
-        """The state beyond a zero of a switch."""
+        """Passes the zero of a switch. Returns the state after it."""
         for element in self.elements:
             count = len(element.held)
             if which < count:
@@ -274,7 +278,7 @@ class Motion:
         return y
 
     def blow(self, t, y, before, after):
-        """Rates behind a jump of a prescribed rate."""
+        """The state after a jump in the velocities of prescribed motions."""
         jump = np.array(after) - before
         if not np.any(np.abs(jump) > 1e-14):
             return y
@@ -294,7 +298,7 @@ class Motion:
 
     def _solver(self, t, y, end, tolerance, step):
         first = min(step, end - t) if step else None
-        return DOP853(self.derivative, t, y, end, rtol=tolerance, atol=tolerance, first_step=first)
+        return RungeKutta(self.derivative, t, y, end, rtol=tolerance, atol=tolerance, first_step=first)
 
     def _exactly(self, t, y, end, tolerance):
         if end <= t:
@@ -305,14 +309,14 @@ class Motion:
         return solver.y
 
     def _advance(self, t, y, end, tolerance):
-        """To the end, or to the first zero of a switch: (time, state, which one or None)."""
+        """Integrates to the end, or to the first zero of a switch. Returns (time, state, index of the switch)."""
         solver = self._solver(t, y, end, tolerance, self.length)
         has_switches = any(e.held for e in self.elements) or bool(self.frictions)
         while solver.status == "running":
             begin, y_begin = solver.t, solver.y.copy()
             message = solver.step()
             if solver.status == "failed":
-                raise RuntimeError(f"DOP853 at {solver.t}: {message}")
+                raise RuntimeError(f"{RungeKutta.__name__} at {solver.t}: {message}")
             self.length = solver.h_abs
             if not has_switches:
                 continue
@@ -334,7 +338,7 @@ class Motion:
             if at < first[0]:
                 first = (at, k)
         at, k = first
-        # The interpolation is of a lower order than the step: Newton's method on exact ends.
+        # The interpolation has a lower order than the step. So Newton's method follows, with integrations to the end.
         for _ in range(3):
             y = self._exactly(begin, y_begin, at, tolerance)
             value = self.switch_values(at, y)[k]
@@ -351,13 +355,13 @@ class Motion:
         return at, self._exactly(begin, y_begin, at, tolerance), k
 
     def run(self, times, tolerance=TOLERANCE, shift=None):
-        """Positions of the judged points (times, points, 3) [m]. `shift`: a distance of further ends of pieces."""
+        """Positions of the judged points (times, points, 3) [m]. `shift`: spacing of additional ends of intervals."""
         self._read_elements()
         ends = {t for t in list(times) + self.corners + list(self.samples) if 0 < t <= self.until}
         if shift:
             ends |= set(np.arange(shift, self.until, shift))
         ends = sorted(ends)
-        ends = [b for a, b in zip([0.0] + ends, ends) if b - a > 1e-12]  # those that differ by round-off are one
+        ends = [b for a, b in zip([0.0] + ends, ends) if b - a > 1e-12]  # merges ends that differ by round-off
         t, y, self.length, self.events = 0.0, self.y0.copy(), None, 0
         self.piece = (0.0, ends[0])
         found, wanted = {0.0: self.mechanism.positions(self.unpack(0.0, y)[0])}, list(times)[1:]

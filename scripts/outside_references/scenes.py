@@ -1,6 +1,6 @@
-"""The scenes that are judged from outside: name, group, whether they have corners, end time, text.
+"""The scenes that have outside references: group, name, whether they have corners, end time, text.
 
-Numbers come from generators with fixed seeds: they are the same each time, and none of them is round.
+Numbers come from random generators with fixed seeds: they are reproducible, and none of them is round.
 """
 
 import math
@@ -58,13 +58,13 @@ def scene(parts, simulation, gravity=9.81):
 
 
 def hinge(simulation, inner="", inertia=0.35, rest=""):
-    """A body on an axis, without gravity: I q'' = effort."""
+    """A body on an axis without gravity: I q'' = effort."""
     return scene(link("a", 1.0, (0, 0), inertia) + joint("h", "continuous", "world", "a", inner=inner) + rest,
                  simulation + probe("a", "1 0 0"), 0.0)
 
 
 def pendulum(simulation, inner="", rest="", kind="continuous"):
-    """It hangs along -y."""
+    """A pendulum that hangs along -y."""
     return scene(link("a", 1.0, (0, -0.5)) + joint("h", kind, "world", "a", inner=inner) + rest,
                  simulation + probe("a", "0 -1 0"))
 
@@ -96,7 +96,7 @@ def crank(simulation, inner=("", "", ""), angle=0.7, gravity=9.81):
 
 
 def four_bar(simulation, inner="", angle=0.9, gravity=9.81):
-    """Ground 0.5, crank 0.2, coupler 0.45, rocker 0.4: where the circles about the crank's pin and the ground meet."""
+    """Ground 0.5, crank 0.2, coupler 0.45, rocker 0.4. Coupler and rocker meet where circles about their pins do."""
     pin = complex(0.2 * math.cos(angle), 0.2 * math.sin(angle))
     way = 0.5 - pin
     distance = abs(way)
@@ -114,7 +114,7 @@ def four_bar(simulation, inner="", angle=0.9, gravity=9.81):
 
 
 def carried_pendulum(simulation, inner=""):
-    """A cart on which a pendulum hangs; nothing says how the cart moves."""
+    """A cart on which a pendulum hangs. The motion of the cart is up to `simulation`."""
     return scene(link("c", 1.0) + joint("s", "prismatic", "world", "c", axis="1 0 0")
                  + link("a", 0.8, (0, -0.4), 0.03) + joint("h", "continuous", "c", "a", inner=inner),
                  simulation + probe("a", "0 -0.8 0"))
@@ -137,7 +137,7 @@ def jump(rng, size, until):
 
 
 def forces(rng):
-    """Efforts with jumps and kinks on what is smooth otherwise."""
+    """Otherwise smooth problems, with efforts that have jumps and kinks."""
     r = rng.uniform
     yield "jump, hinge", 1.0, hinge(effort("h", jump(rng, 3, 1)))
     yield "jump at sqrt(0.1)", 1.0, hinge(effort("h", "t < sqrt(0.1) ? 3 : -3"), inertia=1.0)
@@ -308,7 +308,7 @@ def smooth(rng):
 
 
 def flexible(rng):
-    """Beams have no reference here: finer runs judge them."""
+    """Beams have no outside reference: they are judged by finer runs of flexarm."""
     r = rng.uniform
 
     def arm(simulation, inner="", kind="continuous", rest="", gravity=9.81):

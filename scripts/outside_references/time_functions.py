@@ -1,6 +1,6 @@
-"""Functions of time as docs/scene_format.md describes them: value, first and second derivative, and their corners.
+"""Functions of time by docs/scene_format.md, with their first and second derivatives and their corners.
 
-Written from the documentation, not from flexarm's sources: references must not share its errors.
+Written from the documentation rather than from flexarm's sources, so that references do not share its errors.
 """
 
 import math
@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Jet:
-    """A number with its first two derivatives with respect to time."""
+    """A number with its first and second time derivative."""
 
     __slots__ = ("x", "d", "dd")
 
@@ -18,7 +18,7 @@ class Jet:
         self.x, self.d, self.dd = x, d, dd
 
     def through(self, x, slope, curve):
-        """f(self), from value, slope and second derivative of f."""
+        """f(self), given value, first and second derivative of f."""
         return Jet(x, slope * self.d, slope * self.dd + curve * self.d * self.d)
 
     def __add__(self, other):
@@ -63,7 +63,7 @@ _TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)|
 
 
 class Expression:
-    """An expression in t. `__call__(t)` is a Jet; `switches` are functions of t whose zeros are its corners."""
+    """An expression in t. `__call__(t)` returns a Jet. `switches`: functions of t whose zeros are the corners."""
 
     def __init__(self, text):
         self.text, self.switches, self._tokens, position = text, [], [], 0
@@ -181,13 +181,13 @@ class Expression:
         inner = arguments[0]
         if name in ("abs", "sign"):
             self.switches.append(lambda t: inner(t).x)
-        if name == "rint":  # jumps at halves
+        if name == "rint":  # jumps at half-integers
             self.switches.append(lambda t: math.cos(math.pi * inner(t).x))
         return lambda t: _FUNCTIONS[name](inner(t))
 
 
 class Table:
-    """TIME:VALUE, linear, or TIME:VALUE:RATE, cubic; constant outside."""
+    """TIME:VALUE (linear) or TIME:VALUE:RATE (cubic); constant outside."""
 
     def __init__(self, text):
         rows = [[float(number) for number in row.split(":")] for row in text.split()]
@@ -210,7 +210,7 @@ class Table:
 
 
 def read(text):
-    """A number, a table or an expression; a column of a file is refused."""
+    """Reads a number, a table or an expression; columns of files are refused."""
     text = text.strip()
     if "#" in text:
         raise ValueError(f"'{text}': columns of files are not read here")
@@ -220,7 +220,7 @@ def read(text):
 
 
 def corners(function, until, samples=20000):
-    """Times inside (0, until) where a function is not smooth: points of tables, zeros of its switches."""
+    """Times inside (0, until) at which a function is not smooth: points of tables, and zeros of its switches."""
     found = [t for t in getattr(function, "times", []) if 0 < t < until]
     grid = np.linspace(0, until, samples + 1)
     for switch in function.switches:

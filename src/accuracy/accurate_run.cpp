@@ -16,21 +16,23 @@
 namespace flexarm {
 namespace {
 
-/// What is taken instead of the default scheme where that is left to flexarm.
+/// Schemes from which flexarm chooses if the scene leaves the choice to it: the default one, and one of higher order.
 constexpr const char* kDefault = "em";
 constexpr const char* kHigherOrder = "em4";
-/// It is thought of where the other's error is known: below this estimate.
+/// The scheme of higher order is considered once the error of the default scheme is known: if its estimate is below
+/// this.
 constexpr double kKnown = 0.1;
-/// Corners nearer than this to another end of a step, of an interval, need no step of their own: what acts enters by
-/// its mean.
+/// Relative to an interval. If a corner is nearer than this to another end of a cell, no step has to end at it: the
+/// step then uses the mean of what acts.
 constexpr double kShortestCell = 1e-6;
 
-/// Empty: the scene says which scheme it wants, or the other one does not take the scene.
+/// The simulation with the scheme of higher order, in the same state. None if the scene chooses its scheme, or if the
+/// other scheme cannot simulate the scene.
 std::optional<Simulation> of_higher_order(const Simulation& simulation) {
   if (simulation.scene().integrator.scheme != "auto" || simulation.scheme() != kDefault) return std::nullopt;
   scene::SceneDescription scene = simulation.scene();
   scene.integrator.scheme = kHigherOrder;
-  scene.starts_in_equilibrium = false;  // it goes on from where the simulation is
+  scene.starts_in_equilibrium = false;  // it goes on from the simulation's state
   try {
     Simulation other(std::move(scene));
     other.take_over(simulation);
@@ -70,9 +72,9 @@ class TriesOfARun {
     };
     require(request.accuracy > 0 && request.accuracy < 1, "an accuracy must lie between 0 and 1");
     require(std::isfinite(request.until) && request.until > plan.begin, "the end must be later than the beginning");
-    require(request.intervals >= 1, "there must be an interval at least");
+    require(request.intervals >= 1, "at least one interval is needed");
     require(!request.scale || (*request.scale > 0 && std::isfinite(*request.scale)), "the scale of errors must be > 0");
-    require(plan.points.size() > 0, "nothing moves by which a run could be judged");
+    require(plan.points.size() > 0, "no probe or tip moves, so that no error can be measured");
     plan.cells = {plan.begin};
     const std::vector<double> corners = known_corners(simulation, plan.begin, request.until);
     auto corner = corners.begin();
@@ -94,15 +96,16 @@ class TriesOfARun {
     return has_tries && has_steps;
   }
 
-  /// The scheme that is expected to come to the end with less work.
+  /// The tries of the scheme that is expected to reach the accuracy with less work.
   SchemeTries& choose() {
     if (is_other_bad_ || !(own_.estimate() < kKnown)) return own_;
     const double own = own_.predicted_iterations();
     return own > iterations_of_other() && make_other() ? *other_ : own_;
   }
 
-  /// Until differences of its own tries tell more: those with one step in an interval, which the limit of the
-  /// simulation's scheme may find good enough, and with two.
+  /// Iterations that the other scheme is expected to need. They follow from the differences of its own tries, as soon
+  /// as there are any. Before, one step per interval is assumed if the limit of the simulation's scheme can judge that
+  /// try, and otherwise two tries, with one and with two steps.
   double iterations_of_other() const {
     if (other_ && other_->judged() >= 2) return other_->predicted_iterations();
     if (other_ && other_->judged() == 1) return 2 * other_->iterations();
@@ -147,11 +150,11 @@ const char* to_string(AccurateRun::End end) {
     case AccurateRun::End::Failed:
       return "a step has failed";
     case AccurateRun::End::NoConvergence:
-      return "shorter steps make the error no smaller: round-off, or a motion that is chaotic";
+      return "shorter steps do not reduce the error: round-off dominates, or the motion is chaotic";
     case AccurateRun::End::OutOfTries:
-      return "the most tries have been made";
+      return "the largest number of tries is reached";
     case AccurateRun::End::OutOfSteps:
-      return "the most steps have been made";
+      return "the largest number of steps is reached";
   }
   return "";
 }

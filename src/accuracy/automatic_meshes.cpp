@@ -8,11 +8,11 @@
 namespace flexarm {
 namespace {
 
-/// Relative errors of the steps with which meshes are measured.
+/// Relative error of the steps with which meshes are measured.
 constexpr double kPilotError = 0.02;
-/// Of the accuracy, what is not looked at any more.
+/// Share of the accuracy for the error of the richest mesh, to which the other meshes are compared.
 constexpr double kRest = 0.1;
-/// Elements of the pilot run: enough for the motion of the worst beam to be roughly right.
+/// Elements of each beam in the pilot run: enough for the motion of the worst beam to be roughly right.
 constexpr int kPilotElements = 3;
 
 void choose(TrialRuns& trials, double accuracy, const MeshFreedom& freedom, AutomaticMeshes& out) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of a mesh and of a step, which may be unknown.
+/// Size of the error of a mesh and a step together [m]. Infinite if the error of the step is unknown.
 double together(const MotionDifference& mesh, const MotionDifference& step) {
   if (step.size() == 0) return kInfinity;
   if (mesh.size() == 0) return size(step);
@@ -38,7 +38,7 @@ CandidatePool::CandidatePool(MeshErrors meshes, std::vector<StepErrors> steps, c
   fit_cost(runs);
 }
 
-/// Least squares of relative deviations; both parts positive.
+/// Fits the cost of an iteration by least squares of relative deviations. Neither part becomes negative.
 void CandidatePool::fit_cost(const std::deque<TrialRun>& runs) {
   double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;
   for (const TrialRun& run : runs) {

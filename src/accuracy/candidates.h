@@ -1,5 +1,5 @@
 #pragma once
-/// Combinations of meshes, schemes and steps, whose errors and costs follow from those of their parts.
+/// Combinations of meshes, schemes and steps, whose errors and costs are predicted from those of the parts.
 
 #include <deque>
 #include <optional>
@@ -14,27 +14,30 @@ namespace flexarm {
 struct Candidate {
   std::vector<BeamResolution> beams;
   std::string scheme;
-  int parts = 1;       ///< steps of an interval
+  int parts = 1;       ///< steps in an interval
   double error = 0;    ///< predicted, relative to the largest displacement
-  double seconds = 0;  ///< of the processor for the whole run, predicted
+  double seconds = 0;  ///< predicted processor time of the whole run
 };
 
-/// What was measured of meshes and of steps. Errors are small differences of motions: those of a mesh and of a step
-/// add up as vectors. A sum that is smaller than its larger part is taken for that: that they cancel is luck.
+/// Predicts errors and costs from what was measured of meshes and of steps. Errors are small differences of motions, so
+/// those of a mesh and of a step add up as vectors. If their sum is smaller than its larger part, the larger part
+/// counts: that they cancel is luck.
 class CandidatePool {
  public:
   CandidatePool() = default;
-  /// `runs`: from which the cost of an iteration follows. `scale`: largest displacement [m].
+  /// `runs`: give the cost of an iteration. `scale`: largest displacement [m].
   CandidatePool(MeshErrors meshes, std::vector<StepErrors> steps, const std::deque<TrialRun>& runs, double scale,
                 int intervals);
 
-  /// For each mesh and scheme the longest step that keeps the accuracy, the cheapest first.
+  /// For each mesh and scheme, the longest step that keeps the accuracy. The cheapest candidate comes first.
   std::vector<Candidate> cheapest(double accuracy) const;
-  /// For each mesh and scheme the shortest step that takes no longer than that, the most accurate first.
+  /// For each mesh and scheme, the shortest step with which the run takes at most `seconds`. The most accurate
+  /// candidate comes first.
   std::vector<Candidate> most_accurate(double seconds) const;
-  /// The richest mesh with the scheme and the step that keep the accuracy at the least cost; the finest if none does.
+  /// The richest mesh, with the scheme and step that keep the accuracy at the least cost. If none does, with the most
+  /// accurate.
   Candidate reference(double accuracy) const;
-  /// Infinite: of what these settings are made was not measured.
+  /// Predicted relative error of a run. Infinite if its meshes or its steps were not measured.
   double predicted_error(const RunSettings& settings, const JudgedTimes& times) const;
   double scale() const { return scale_; }
 
@@ -47,10 +50,10 @@ class CandidatePool {
   std::vector<StepErrors> steps_;
   double scale_ = 1;
   int intervals_ = 1;
-  double fixed_ = 0, per_cost_ = 0;  // seconds of an iteration: that of the rest, and of a unit of mesh_cost()
+  double fixed_ = 0, per_cost_ = 0;  // seconds of an iteration: a fixed part, and per unit of mesh_cost()
 };
 
-/// Numbers of steps in an interval that are tried, each some ten per cent larger than the one before.
+/// Numbers of steps in an interval that are considered. Each is about ten per cent larger than the one before.
 const std::vector<int>& step_parts();
 
 }  // namespace flexarm

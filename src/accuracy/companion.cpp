@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kUnknownEstimate = std::numeric_limits<double>::quiet_NaN();
 
-/// Wrenches that differ by how strong they are, not by where they act.
+/// Whether the wrenches act at the same places, so that they differ in strength only.
 bool act_alike(const std::vector<NodalLoad>& a, const std::vector<NodalLoad>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodalLoad& x, const NodalLoad& y) {
     return x.node == y.node && x.follows == y.follows && x.arm == y.arm && x.pull.stiffness == y.pull.stiffness &&
@@ -28,7 +28,8 @@ bool act_alike(const std::vector<NodalLoad>& a, const std::vector<NodalLoad>& b)
   });
 }
 
-/// Efforts and wrenches of both steps have the same impulse as their means over both; set points are those at the end.
+/// Replaces efforts and wrenches by their means over both steps, which have the same impulse. Set points are those at
+/// the end.
 void take_means(const Commands& first, Commands& second) {
   for (std::size_t i = 0; i < first.efforts.size(); ++i)
     if (!std::isnan(first.efforts[i]) && !std::isnan(second.efforts[i]))
@@ -41,10 +42,10 @@ void take_means(const Commands& first, Commands& second) {
   }
 }
 
-/// What steps over corners may have done to positions, which both simulations may have done alike. Where the
-/// acceleration of a point jumps by da, a step that takes it for the one of a side, or by a sample in its middle, is
-/// off by da h/2 in the velocity at most, and that goes on; a velocity that jumps by dv, as in a hit, does so h/2 too
-/// early or too late at most.
+/// A bound of what steps over corners may do to positions. Both simulations may have the same error there, so that
+/// their distance does not show it. If the acceleration of a point jumps by da, a step that uses the acceleration of
+/// one side, or a sample in its middle, has an error of at most da h/2 in the velocity, which stays. If a velocity
+/// jumps by dv, as in a hit, it does so at most h/2 too early or too late.
 class CornerDoubt {
  public:
   CornerDoubt(const Simulation& simulation, const JudgedPoints& points) : corners_(simulation), points_(points) {
@@ -52,7 +53,7 @@ class CornerDoubt {
     begin(simulation);
   }
 
-  /// The simulation has been put elsewhere.
+  /// Starts again, after the simulation's state was changed from outside.
   void begin(const Simulation& simulation) {
     restart();
     known_ = 0;
@@ -61,10 +62,10 @@ class CornerDoubt {
     corners_.begin(simulation);
     add_points(simulation);
   }
-  /// What was before does not count.
+  /// Forgets the errors so far.
   void restart() { position_ = velocity_ = 0; }
   void follow(const Simulation& simulation);
-  /// [m]; NaN: there was a corner so early that nothing is known of the motion before.
+  /// The bound [m]. NaN: there was a corner so early that the motion before it is not known well enough.
   double amount() const { return position_; }
 
  private:
@@ -77,7 +78,7 @@ class CornerDoubt {
   Corners corners_;
   const JudgedPoints& points_;
   std::array<std::vector<Vector3>, 6> past_;  // positions after the last steps, newest first
-  std::size_t known_ = 0;                     // of these
+  std::size_t known_ = 0;                     // how many of them are known
   unsigned passed_ = 0;                       // bit k: there was a corner within the step k steps ago
   double position_ = 0, velocity_ = 0;        // [m, m/s]
 };
@@ -88,20 +89,20 @@ void CornerDoubt::follow(const Simulation& simulation) {
   position_ += h * velocity_;
   add_points(simulation);
   passed_ = (passed_ << 1) | (corners_.passed(simulation) ? 1u : 0u);
-  if ((passed_ & 4u) == 0) return;  // two steps after a corner the motion behind it is known
+  if ((passed_ & 4u) == 0) return;  // the motion after a corner is known two steps later
   if (known_ < past_.size()) {
     position_ = kUnknownEstimate;
     return;
   }
-  double acceleration = 0, velocity = 0;  // by which they jump
+  double acceleration = 0, velocity = 0;  // largest jumps
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto x = [&](std::size_t k) -> const Vector3& { return past_[k][i]; };
     const Vector3 after = x(0) - 2 * x(1) + x(2), before = x(3) - 2 * x(4) + x(5);
     acceleration = std::max(acceleration, (after - before).norm() / (h * h));
-    // But for what both accelerations make of the time between.
+    // Without the part that both accelerations contribute in the meantime.
     velocity = std::max(velocity, (x(0) - x(1) - x(3) + x(4) - 1.5 * (after + before)).norm() / h);
   }
-  constexpr double kStepsSince = 2.5;  // from the middle of the corner's
+  constexpr double kStepsSince = 2.5;  // since the middle of the step with the corner
   velocity_ += 0.5 * h * acceleration;
   position_ += 0.5 * h * (velocity + kStepsSince * h * acceleration);
 }
@@ -126,12 +127,12 @@ struct Companion::Implementation {
   Simulation companion;
   JudgedPoints points;
   CornerDoubt doubt;
-  double window, share;   // share: of a difference, by which the simulation is in error
+  double window, share;   // share: the simulation's error over its distance from the companion
   double begin_time = 0;  // of the window [s]
   double last_time = 0;   // of the simulation, after the last step [s]
-  bool is_half = false;   // the companion is a step behind
+  bool is_half = false;   // the companion is one step behind
   double largest = 0, largest_before = kUnknownEstimate;
-  Commands first, second;  // of the steps that it does in one
+  Commands first, second;  // of the two steps that the companion makes in one
   Snapshot start;
   std::vector<Vector3> positions, companion_positions;
 
@@ -158,7 +159,7 @@ bool Companion::Implementation::step(const Simulation& simulation) {
     give_commands(second, companion);
     return companion.step().converged;
   }
-  // Other wrenches: these two steps are done as the simulation does them.
+  // The wrenches act at other places: the companion makes these two steps like the simulation.
   companion.set_step_size(step);
   give_commands(first, companion);
   bool is_done = companion.step().converged;

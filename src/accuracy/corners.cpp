@@ -9,14 +9,14 @@
 namespace flexarm {
 namespace {
 
-/// Of a side that is not known yet: no other one is a change to it.
+/// A side that is not known yet. To change from it, or to it, is no corner.
 constexpr int kUnknown = 2;
-/// Below which part of the limit an effort is not at it: Newton's method leaves less.
+/// An effort that is below its limit by at most this part is at the limit: errors of Newton's method are smaller.
 constexpr double kAtLimit = 1e-6;
-/// What changes by more than this part of all that it does over a step within a quarter of it jumps there: a parabola
-/// at its vertex has 7/16, a straight line 1/4.
+/// A function jumps if it makes more than this part of its change over a step within a quarter of the step. A parabola
+/// at its vertex makes 7/16, a straight line 1/4.
 constexpr double kJump = 0.9;
-/// Of a function's values.
+/// Changes of a function that are smaller than this, relative to its values, are round-off.
 constexpr double kRoundOffOfSums = 1e-9;
 
 int side(double value, double lower, double upper) {
@@ -27,7 +27,7 @@ int sign(double value) {
   return side(value, 0, 0);
 }
 
-/// The largest effort of a motor, at its rate in the step.
+/// The largest effort that a motor can give, at its rate in the step.
 double limit_of(const Actuator& actuator, const Coordinate& coordinate, double effort, double rate) {
   double limit = actuator.drive.effort_limit;
   if (std::isfinite(actuator.drive.velocity_limit) && effort * rate > 0)
@@ -92,7 +92,7 @@ void Corners::look(const Simulation& simulation) {
   auto mark = marks_.begin();
   auto way = ways_.begin();
   const auto moved = [&](double now) {
-    const double change = now - *way;  // NaN: nothing is known
+    const double change = now - *way;  // NaN if nothing is known
     *way++ = now;
     return change;
   };

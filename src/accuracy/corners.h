@@ -1,5 +1,5 @@
 #pragma once
-/// Steps in which the equations of motion change. (docs/notes/accuracy.md 6)
+/// Finds the steps in which the equations of motion change. (docs/notes/accuracy.md 6)
 
 #include <vector>
 
@@ -7,18 +7,18 @@
 
 namespace flexarm {
 
-/// Tells by a simulation's state after each step whether forces may have jumped, or begun to change otherwise, within
-/// it: at stops, dry friction, play and motors' limits, where something leaves its line, and in functions of time that
-/// jump. Allocates nothing after its construction.
+/// Looks at a simulation's state after each step, and decides whether forces may have jumped within the step, or begun
+/// to change in another way. That happens at stops, dry friction, play and limits of motors, when a slider leaves its
+/// line, and in functions of time that jump. Allocates nothing after its construction.
 class Corners {
  public:
   explicit Corners(const Simulation& simulation);
 
-  /// There may be any at all.
+  /// Whether there may be any corners at all.
   bool may_come() const { return may_come_; }
-  /// The simulation has been put elsewhere.
+  /// Call it after the simulation's state was changed from outside.
   void begin(const Simulation& simulation);
-  /// After a step: whether there was one within it.
+  /// Call it after each step. Returns whether there was a corner within the step.
   bool passed(const Simulation& simulation);
 
  private:
@@ -26,8 +26,8 @@ class Corners {
   bool jumped(const Simulation& simulation) const;
 
   bool may_come_ = false;
-  std::vector<int> marks_, last_marks_;  // of each place in turn, on which side it is
-  std::vector<double> ways_;             // coordinates and rotors after the last step [rad or m]
+  std::vector<int> marks_, last_marks_;  // for each place of a corner, on which side of it the simulation is
+  std::vector<double> ways_;             // positions of coordinates and rotors after the last step [rad or m]
   double time_ = 0;                      // of the last step's end [s]
 };
 

@@ -8,23 +8,24 @@
 namespace flexarm {
 namespace {
 
-/// Of the longest step, to which events are found. A force that jumps so far from where it does makes an error of the
-/// velocity of that part of what a whole step would.
+/// Tolerance with which events are found, relative to the longest step. A step that ends this far from where a force
+/// jumps has this part of the velocity's error that a whole step across the jump would have.
 constexpr double kFound = 1e-8;
-/// The same of stops by friction, which leave no error of the velocity, and of kinks, whose error is its square.
+/// The same for stops by friction, which make no error of the velocity, and for kinks, whose error is quadratic.
 constexpr double kSlide = 1e-3;
-/// Of the last correction, by which a step that is taken anew is longer than to where the event is expected: so it ends
-/// behind it, and shows where it is better than one that ends before.
+/// Relative to the last correction. A repeated step is longer by this than to where the event is expected, so that it
+/// ends after the event: it then shows the event's place better than a step that ends before.
 constexpr double kBeyond = 2e-3;
-/// Times that a step is taken anew, to end at an event.
+/// Most repetitions of a step that should end at an event.
 constexpr int kMostLocations = 10;
-/// Of a step: where an event is not found and nears its beginning so far, something jumps to and fro.
+/// Relative to a step. If no event was found and the step has become shorter than this, a force jumps back and forth:
+/// the whole step is made.
 constexpr double kShortest = 0.05;
-/// Hits on stops are resolved by so many times as many steps as there are in a cell.
+/// Hits on stops are resolved more finely by this factor times the number of steps in a cell.
 constexpr double kRefinement = 2;
-/// Of a step, by which sums of steps may miss times.
+/// Relative to a step: sums of steps may miss times by this.
 constexpr double kMissedTime = 1e-9;
-/// What tolerances of Newton's method may be.
+/// Range of the tolerance of Newton's method.
 constexpr double kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 
 void add_corners(const TimeFunction& function, double begin, double end, std::vector<double>& times) {
@@ -32,7 +33,7 @@ void add_corners(const TimeFunction& function, double begin, double end, std::ve
   times.insert(times.end(), corners.begin(), corners.end());
 }
 
-/// Samples that are due behind `begin`, and ends of commands to set points.
+/// Adds the times after `begin` of samples, of delayed samples that take effect, and of ends of commands to set points.
 void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, double begin, double end,
                         std::vector<double>& times) {
   if (!actuator.servo) return;
@@ -45,7 +46,7 @@ void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, do
   for (double n = std::ceil((begin - lag) / period); n * period + lag < end; ++n) times.push_back(n * period + lag);
 }
 
-/// Of an actuator's motor.
+/// Largest effort of an actuator's motor.
 double effort_limit(const Model& model, const Actuator& actuator) {
   double limit = actuator.drive.effort_limit;
   if (!actuator.servo) return limit;
@@ -54,7 +55,7 @@ double effort_limit(const Model& model, const Actuator& actuator) {
   return std::min(limit, actuator.servo->effort_limit);
 }
 
-/// Whether there is anything at which forces may jump where no one foresees it.
+/// Whether forces may jump at times that cannot be foreseen.
 bool may_have_events(const Model& model) {
   const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
     return c.limit || c.friction > 0 || c.friction_coefficient > 0;
@@ -106,12 +107,13 @@ void LocatedSteps::set(int steps, double tolerance) {
 }
 
 StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watcher) {
-  // Divisions of cells of one length differ by round-off; a step that stays as it is keeps what it has learned.
+  // Steps of cells of equal length differ by round-off. If the length stays the same, the simulation keeps what it has
+  // learned.
   const bool stays = std::abs(length - simulation_.step_size()) <= kMissedTime * length;
   EventSearch events;
   if (has_events_) events = {tolerance, kSlide * step(), std::max(1.0, kRefinement * steps_)};
   flexarm::set_step(simulation_, stays ? simulation_.step_size() : length, events);
-  // What a solve leaves is an error of the velocity, over the length of the step.
+  // A remainder of a solve makes an error of the velocity. The shorter the step, the larger is this error.
   simulation_.set_tolerance(
       std::clamp(tolerance_ * std::sqrt(std::min(1.0, length / step())), kLeastTolerance, kMostTolerance));
   watcher.before_step(simulation_);
@@ -121,7 +123,7 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
   return result;
 }
 
-/// A step that ends at the first event, if there is one.
+/// Makes a step of this length, or a shorter one that ends at the first event in it.
 StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
   const double tolerance = kFound * step();
   if (has_events_) simulation_.snapshot(before_);
@@ -131,7 +133,7 @@ StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
     const double correction = length - event_of(simulation_);
     length -= (1 - kBeyond) * correction;
     simulation_.restore(before_);
-    // What is not found soon is stepped over.
+    // Events that are not found soon are stepped over.
     const bool is_found = n < kMostLocations;
     if (!is_found && length < kShortest * whole) length = whole;
     result = this->step(length, is_found ? tolerance : length, watcher);

@@ -1,5 +1,5 @@
 #pragma once
-/// Steps that end where the equations change. (docs/notes/accuracy.md 4)
+/// Makes steps that end where the equations of motion change. (docs/notes/accuracy.md 4)
 
 #include <vector>
 
@@ -8,32 +8,32 @@
 
 namespace flexarm {
 
-/// Times between `begin` and `end` [s], increasing, at which loads, efforts, set points or their rates jump, as the
-/// scene and commands have them, or at which a servo takes a sample.
+/// Increasing times between `begin` and `end` [s] at which equations change, as far as scene and commands foresee it:
+/// loads, efforts, set points or their rates jump, or a servo takes a sample.
 std::vector<double> known_corners(const Simulation& simulation, double begin, double end);
 
-/// Takes a simulation through a time that is cut into cells, at whose ends something has to be: results, or a corner.
-/// A cell has steps of equal length, but that steps also end at events, behind which the rest of the cell is divided
-/// anew.
+/// Takes a simulation through a time that is cut into cells. At the end of a cell there is a corner, or results are
+/// needed. The steps of a cell have equal lengths. Steps also end at events, after which the rest of the cell is
+/// divided anew.
 class LocatedSteps {
  public:
-  /// `cells`: their ends, increasing, the first one where the simulation begins [s].
+  /// `cells`: ends of the cells, increasing. The first number is the time at which the simulation begins [s].
   LocatedSteps(Simulation& simulation, std::vector<double> cells);
 
-  /// From now on the longest cell has `steps` steps, a shorter one fewer by the square root of its length: its local
-  /// error is small. The tolerance of Newton's method is that of the longest steps. Starts with the first cell.
+  /// Starts again with the first cell. The longest cell gets `steps` steps. Shorter ones get fewer, by the square root
+  /// of their length, since their local errors are small. `tolerance` of Newton's method is for the longest steps.
   void set(int steps, double tolerance);
-  /// Steps of all cells, but for what events add, if the longest has `steps`.
+  /// Number of steps in all cells if the longest has `steps`, without those that events add.
   double planned(double steps) const;
   /// Length of the longest steps [s].
   double step() const { return longest_ / steps_; }
-  /// Goes on to the end of the cell that ends at `time` [s]. What the last step came to; `iterations`, `recoveries` and
-  /// steps of `run` are counted, those of steps that are taken back included. Not converged: a step has failed, or the
-  /// watcher has had enough, which `run.end` tells.
+  /// Advances to the end of the cell that ends at `time` [s]. Counts `iterations` and `recoveries`, with those of
+  /// repeated steps, and the steps of `run`, and sets `run.last`. Returns false if a step has failed or the watcher
+  /// ends the run; `run.end` says which.
   bool advance_to(double time, RunWatcher& watcher, AccurateRun& run);
 
   long iterations = 0;  ///< of Newton's method
-  int recoveries = 0;   ///< other guesses, and halvings that no event has asked for
+  int recoveries = 0;   ///< other guesses, and halvings unless events may cause them
 
  private:
   double steps_of(double length, double steps) const;
@@ -47,7 +47,7 @@ class LocatedSteps {
   double longest_ = 0, tolerance_ = 0;
   int steps_ = 1;
   bool has_events_;
-  Snapshot before_;  // the step
+  Snapshot before_;  // state before the step
 };
 
 }  // namespace flexarm

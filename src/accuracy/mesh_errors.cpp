@@ -8,14 +8,14 @@
 namespace flexarm {
 namespace {
 
-/// Time of an element and iteration by order, that of order 1 as unit.
+/// Time of an iteration for an element of each order. The unit is that of order 1.
 constexpr double kCost[] = {0, 1, 2, 4, 7};
-/// Of a rigid beam, so that it counts as something.
+/// Cost of a rigid beam, so that it is not zero.
 constexpr double kRigidCost = 0.2;
 
 constexpr int kRichOrder = 4, kFirstRichElements = 2, kMostRichElements = 32;
 
-/// Meshes that are tried, by number of nodes; `order`: of all of them, empty: any.
+/// Meshes that are tried, by number of nodes. `order`: of all meshes; empty: any.
 std::vector<BeamResolution> ladder(std::optional<int> order) {
   if (!order)
     return {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3},  {3, 2}, {4, 2},  {3, 3},  {2, 4},  {4, 3},  {6, 2}, {3, 4},
@@ -38,7 +38,7 @@ std::vector<BeamResolution> rich_meshes(const std::vector<BeamResolution>& own, 
   return beams;
 }
 
-/// The errors of one beam's meshes about the rich run; up to the first two that are good enough.
+/// Errors of one beam's meshes, compared to the rich run. Ends after two meshes that are good enough.
 std::vector<MeshError> measure_beam(TrialRuns& trials, const TrialRun& rich, std::size_t beam, bool may_be_rigid,
                                     const std::optional<int>& order, double wanted) {
   std::vector<BeamResolution> meshes = ladder(order);
@@ -62,7 +62,7 @@ std::vector<MeshError> measure_beam(TrialRuns& trials, const TrialRun& rich, std
   return found;
 }
 
-/// Only those better than all that are cheaper.
+/// Only the meshes that are better than all cheaper ones.
 std::vector<const MeshError*> worth_their_cost(const std::vector<MeshError>& meshes) {
   std::vector<const MeshError*> kept;
   for (const MeshError& mesh : meshes)
@@ -139,7 +139,7 @@ std::vector<MeshChoice> mesh_choices(const MeshErrors& errors) {
     out.cost = mesh_cost(out.beams);
     return out;
   };
-  // Beams' errors are taken not to cancel, which they would do for this motion alone.
+  // Errors of different beams are assumed not to cancel, since they would do so for this motion only.
   const auto gain = [&](std::size_t b, std::size_t to) {
     const MeshError &now = *worthy[b][at[b]], &then = *worthy[b][to];
     return (size(now.error) - size(then.error)) / (then.cost - now.cost);

@@ -1,11 +1,12 @@
 #pragma once
-/// The clock by which computing is timed: other programs on the machine do not count.
+/// The clock by which computing is timed. It measures processor time, so that other programs on the machine do not
+/// count.
 
 #include <ctime>
 
 namespace flexarm {
 
-/// Of the calling thread, from some beginning [s].
+/// Processor time of the calling thread, from some fixed instant [s].
 inline double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

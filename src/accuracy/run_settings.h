@@ -14,7 +14,7 @@ struct BeamResolution {
   std::optional<int> elements;  ///< empty: "auto"; 0: the link is rigid
   int order = 2;
 
-  /// "3 x 2", "auto x 2", "rigid".
+  /// Elements x order: "3 x 2", "auto x 2", or "rigid".
   std::string text() const;
   bool operator<(const BeamResolution& other) const;
   bool operator==(const BeamResolution& other) const;
@@ -31,7 +31,7 @@ struct RunSettings {
 };
 
 RunSettings settings_of(const scene::SceneDescription& scene);
-/// The scene with these in place of its own; options of <integrator> that another scheme does not take are forgotten.
+/// The scene with these settings. Removes options of <integrator> that the scheme does not take.
 /// @throws std::invalid_argument unless there is one resolution for each beam.
 scene::SceneDescription with_settings(scene::SceneDescription scene, const RunSettings& settings);
 

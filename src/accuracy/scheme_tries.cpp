@@ -10,40 +10,46 @@
 namespace flexarm {
 namespace {
 
-/// Shares of the requested accuracy. An estimate up to the first one is good enough, since true errors were up to 1.35
-/// times their estimates, its inverse. The next try aims at the second one, so that an error a little larger than
-/// expected is still small enough.
+/// Shares of the requested accuracy. An estimate up to kEnough is good enough: true errors were up to 1.35 times their
+/// estimates, and 0.74 is the inverse. The next try aims at kAim, so that it is still good enough if its error is a
+/// little larger than expected.
 constexpr double kEnough = 0.74, kAim = 0.6;
-/// The least by which steps are multiplied between tries: below it, a difference of runs says little.
+/// Smallest ratio of steps from a try to the next. Below it, the difference of the runs says little.
 constexpr double kLeastGrowth = 1.2;
-/// An error is known the better, the smaller it is; from it, how many times as many steps the next try has at most.
+/// Largest ratio of steps from a try to the next. The smaller an error is, the better it is known.
 double most_growth(double estimate) {
   return estimate > 0.1 ? 2 : estimate > 0.01 ? 4 : 8;
 }
-/// Differences of runs as large as this, of the way that points move, have no order: they move in another way.
+/// If runs differ by this part of the points' way or more, their difference has no order: the points move in different
+/// ways.
 constexpr double kSaturated = 0.3;
-/// A difference of runs that is so many times the expected one was foreseen badly: less is made of it.
+/// If a difference of runs is larger than expected by this factor, it was predicted badly, and a lower order is
+/// assumed.
 constexpr double kSurprise = 2;
-/// Tries in turn that make an error no smaller, after which it is given up: small ones are round-off, large ones chaos,
-/// or a motion that the first tries are far too coarse for.
+/// The search ends after kMostStagnations successive tries that do not reduce the error, which means chaos, or a motion
+/// for which the first tries are far too coarse. For errors below kRoundOffBelow one such try is enough, since they are
+/// round-off.
 constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 6;
-/// Tries behind one that has made an error no smaller, of which none is believed to fall by the order of the scheme.
+/// For this many tries after one that has not reduced the error, errors are not believed to fall with the order of the
+/// scheme.
 constexpr int kUnsettled = 2;
-/// Steps in a cell at most: far above what a run may have.
+/// Most steps in a cell, far above what a run may have.
 constexpr double kMostInCell = 1e9;
-/// Tries in turn, each with more steps, in which a step fails or that are astray: it has another reason than its
-/// length.
+/// The search ends after this many successive tries, each with more steps, in which a step fails or which are astray:
+/// the length of the steps is not the reason then.
 constexpr int kMostFailures = 8;
-/// Newton's method leaves the square of its tolerance in every solve. Over the step's length that is an error of the
-/// velocity, which goes on to the end: with signs of their own, all together this share of what is asked for.
+/// Newton's method leaves a remainder of the square of its tolerance in every solve. Divided by the step, that is an
+/// error of the velocity, which lasts to the end. Since their signs differ, all these errors together make this share
+/// of the requested accuracy.
 constexpr double kRemainderShare = 0.1;
-/// Points that move less, of the model's length, are at rest: what they do is round-off, or what a start leaves.
+/// Points that move by less than this part of the model's length scale are at rest: their motion is round-off, or a
+/// remainder of the start.
 constexpr double kAtRest = 1e-6;
-/// A scheme of higher order than this shows what it has in its own tries: at first it is taken for one of this order.
+/// Schemes of higher order are first assumed to have this order, until their own tries show more.
 constexpr double kCommonOrder = 2;
 
-/// The largest distance of any point from where a motion has it at the end of an interval [m].
+/// The largest distance of any point from its position in `motion` at the end of an interval [m].
 double distance(const std::vector<Vector3>& positions, const JudgedMotion& motion, int interval) {
   double largest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i)
@@ -51,7 +57,7 @@ double distance(const std::vector<Vector3>& positions, const JudgedMotion& motio
   return largest;
 }
 
-/// Without its error, which is this share of its difference to `coarse`.
+/// Richardson extrapolation: `fine` without its leading error, which is `share` times its difference from `coarse`.
 JudgedMotion extrapolated(JudgedMotion fine, const JudgedMotion& coarse, double share) {
   for (std::size_t p = 0; p < fine.points.size(); ++p)
     for (std::size_t i = 0; i < fine.points[p].size(); ++i)
@@ -87,7 +93,7 @@ void SchemeTries::set_steps() {
   stepping_.set(steps_, std::sqrt(remainder));
 }
 
-/// `difference`: between the last try and the one before, relative.
+/// The order that is assumed for an estimate. `difference`: between the last try and the one before, relative.
 double SchemeTries::supposed_order(double difference) const {
   if (order_ <= kCommonOrder) return order_;
   if (std::isnan(difference_)) return kCommonOrder;
@@ -95,7 +101,7 @@ double SchemeTries::supposed_order(double difference) const {
   return std::clamp(seen, 1.0, static_cast<double>(order_));
 }
 
-/// The error of a try over its difference to one with so many steps.
+/// The error of the last try over its difference from a try with `planned` steps.
 double SchemeTries::share(double order, double planned) const {
   return 1 / (std::pow(planned_ / planned, order) - 1);
 }
@@ -121,16 +127,16 @@ bool SchemeTries::attempt(AccurateRun& run) {
   return true;
 }
 
-/// Estimates the error by the differences to the last two tries; the larger estimate counts. It is rare that a try
-/// agrees by chance with one that has other steps, and rarer with two.
+/// Estimates the error by the differences from the last two tries, and returns the larger estimate. A try may agree by
+/// chance with one that has other steps, but hardly with two of them.
 double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
   const double difference = motion_error(motion, before_, scale);
   const double order = supposed_order(difference);
   double share = this->share(order, planned_before_);
-  // Much more than the run before has in error itself: half of the order is assumed.
+  // The difference is much larger than the expected error of the run before: assume half of the order.
   if (kSurprise * estimate_ / (1 + share) < difference) share = 1 / (std::sqrt(1 + 1 / share) - 1);
   double estimate = difference * share;
-  // In another way, or where the tries before have not fallen by any order.
+  // The points move in different ways, or the last tries have not converged.
   if (difference > kSaturated || unsettled_ > 0) estimate = std::max(estimate, difference);
   if (judged_ > 2)
     estimate = std::max(estimate, motion_error(motion, earlier_, scale) * this->share(order, planned_earlier_));
@@ -160,7 +166,7 @@ bool SchemeTries::judge(AccurateRun& run) {
     return true;
   }
   if (!is_compared) return false;
-  // Tries that make nothing better, each with more steps: round-off, or a motion that amplifies it.
+  // Further tries with more steps that are not better mean round-off, or a motion that amplifies it.
   const bool is_better = !(estimate_ > 0.5 * last);
   stagnations_ = is_better ? 0 : stagnations_ + 1;
   unsettled_ = is_better ? std::max(unsettled_ - 1, 0) : kUnsettled;
@@ -179,7 +185,7 @@ bool SchemeTries::go_on(bool failed) {
     growth = std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_), kLeastGrowth,
                         most_growth(estimate_));
   next_ = static_cast<int>(std::min(std::ceil(growth * steps_), kMostInCell));
-  // Steps that are nested in those of the try before may be wrong in the same places.
+  // Two tries with nested steps may be wrong in the same places.
   if (steps_ > 1 && next_ % steps_ == 0) ++next_;
   expected_ = estimate_ * std::pow(planned_before_ / stepping_.planned(next_), order_);
   return failures_ <= kMostFailures;

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs of one scheme with more and more steps, and what their differences say about their errors.
+/// Tries of one scheme with more and more steps, whose differences give estimates of their errors.
 
 #include <limits>
 #include <vector>
@@ -15,7 +15,7 @@ struct TryPlan {
   RunWatcher& watcher;
   JudgedPoints points;
   double begin;               ///< [s]
-  std::vector<double> cells;  ///< ends of the cells of LocatedSteps: judged times, and corners that are known [s]
+  std::vector<double> cells;  ///< ends of the cells of LocatedSteps: judged times and known corners [s]
 
   double interval() const { return (request.until - begin) / request.intervals; }  ///< [s]
   double judged_time(int i) const { return i == request.intervals ? request.until : begin + i * interval(); }
@@ -23,56 +23,58 @@ struct TryPlan {
 
 class SchemeTries {
  public:
-  /// From where the simulation is.
+  /// Tries begin at the present state of the simulation.
   SchemeTries(Simulation& simulation, const TryPlan& plan);
 
   Simulation& simulation() const { return simulation_; }
-  /// The same, back where the tries begin.
+  /// The simulation, in the state at which the tries begin.
   Simulation& at_start() {
     simulation_.restore(start_);
     return simulation_;
   }
-  /// What the next try has, in all.
+  /// Total number of steps of the next try, and of the smallest possible one.
   double next_steps() const { return stepping_.planned(next_); }
   double fewest_steps() const { return stepping_.planned(1); }
-  double estimate() const { return estimate_; }  ///< of the last try that was judged, relative; NaN: there is none
-  /// Of the last try that was judged.
+  double estimate() const { return estimate_; }  ///< of the last judged try, relative; NaN: there is none
+  /// Iterations of the last judged try.
   double iterations() const { return iterations_before_; }
   double iterations_per_step() const { return iterations_before_ / planned_before_; }
-  /// Iterations of a try that has the error which is asked for; NaN: unknown.
+  /// Predicted iterations of a try with the requested error; NaN: unknown.
   double predicted_iterations() const;
   int judged() const { return judged_; }
 
-  /// What the last two tries that were judged tend to, without the leading term of their errors.
+  /// Extrapolation of the last two judged tries, without the leading term of their errors.
   const JudgedMotion& limit() const { return limit_; }
-  /// Whether that may be so near the true motion that a try of another scheme can be judged by it: its error is the
-  /// square of a phase error at least.
+  /// Whether the limit may be near enough to the true motion to judge a try of another scheme. Its error is at least
+  /// the square of a phase error.
   bool limit_may_judge() const;
-  /// What the tries of another scheme tend to, by which the first one of these is judged; it must outlive them.
+  /// Sets the limit of another scheme's tries, by which the first try of this scheme is judged. It must outlive this
+  /// object.
   void judge_first_by(const JudgedMotion& limit) { other_limit_ = &limit; }
 
-  /// Makes the next try. False if a step has failed, or the run was interrupted, which `run.end` tells.
+  /// Makes the next try. Returns false if a step has failed or the run was interrupted; `run.end` says which.
   bool attempt(AccurateRun& run);
-  /// Estimates the error of that try from its difference to the one before, or to the other scheme's limit, unless it
-  /// is astray. True if nothing more is to be tried: `run.end` tells why.
+  /// Estimates the error of the last try from its difference from the one before, or from the other scheme's limit,
+  /// unless the try is astray. Returns true if no further try should be made; `run.end` says why.
   bool judge(AccurateRun& run);
-  /// The next try has more steps. `failed`: the last one was not judged. False if too many have failed in turn.
+  /// Gives the next try more steps. `failed`: the last try was not judged. Returns false if too many tries have failed
+  /// in turn.
   bool go_on(bool failed);
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   void set_steps();
-  /// Steps had to be saved, and Newton's method has more to do than in the longer ones of the try before: whatever is
-  /// solved there, it is not where the error has an expansion in the step.
+  /// Whether the last try is astray: steps had to be halved or solved from another guess, and Newton's method needed
+  /// more iterations than for the longer steps of the try before. Then the error has no expansion in the step.
   bool is_astray() const {
     const double iterations = static_cast<double>(stepping_.iterations);
     return stepping_.recoveries > 0 && iterations / planned_ > iterations_per_step();
   }
-  /// By another try whose steps are not nested in those of the last one: only the first two are so. Of the first one by
-  /// the limit of another scheme.
+  /// Whether an estimate is confirmed: by a third try, whose steps, unlike those of the second, are not nested in those
+  /// of the try before. The first try is confirmed by the limit of another scheme.
   bool is_confirmed() const { return judged_ > 2 || (judged_ == 1 && other_limit_); }
-  /// To what the next try is compared, and the part of the difference that is its error; null: to nothing.
+  /// What the next try is compared to (null: nothing), and the part of the difference that is its error.
   const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
   double compared_share() const { return judged_ > 0 ? share(order_, planned_before_) : 1; }
   double supposed_order(double difference) const;
@@ -82,15 +84,15 @@ class SchemeTries {
   Simulation& simulation_;
   const TryPlan& plan_;
   Snapshot start_;
-  int order_, solves_;  // of a step
+  int order_, solves_;  // order, and solves per step
   LocatedSteps stepping_;
-  int steps_ = 0, next_ = 1;  // in the longest cell, of the last and the next try
+  int steps_ = 0, next_ = 1;  // in the longest cell, in the last and in the next try
   double planned_ = 0;        // steps of the last try
   double expected_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, unsettled_ = 0, judged_ = 0;
   const JudgedMotion* other_limit_ = nullptr;
   JudgedMotion limit_;
-  // Of the last try that was judged, and of the one before that.
+  // Of the last judged try, and of the one judged before it.
   JudgedMotion before_, earlier_;
   double planned_before_ = kUnknown, planned_earlier_ = kUnknown;
   double estimate_ = kUnknown, difference_ = kUnknown, iterations_before_ = kUnknown;

@@ -11,14 +11,15 @@ namespace flexarm {
 namespace {
 
 constexpr int kMostParts = 1 << 14;
-/// Differences that fall by less from step to step do not converge yet; a scheme of first order has 0.5.
+/// If differences fall by less than this ratio from step to step, runs do not converge yet. A scheme of first order has
+/// 0.5.
 constexpr double kLargestRatio = 0.7;
-/// Relative to the displacement; what positions far from the origin leave of a double, and Newton's method of them.
+/// Relative to the displacement: round-off of positions far from the origin, and what Newton's method leaves of these.
 constexpr double kRoundOff = 1e-10;
-/// Runs in a row that are no better than those before them, which end it.
+/// The search ends after this many runs in a row that are no better than the ones before.
 constexpr int kIdleRuns = 3;
 
-/// How differences fall when the step is halved, at best.
+/// The smallest ratio of successive differences, when the step is halved.
 double ratio_of(const RunSettings& settings) {
   int order = 4;
   for (const Scheme* scheme : meanings(settings.scheme)) order = std::min(order, scheme->order);
@@ -54,8 +55,8 @@ double StepErrors::iterations_per_step(int wanted) const {
 
 namespace {
 
-/// All errors about the limit to which the finest runs lead; the ratio by which the last differences have fallen, 0
-/// where the last one is at most `floor`.
+/// Computes all errors relative to the extrapolated limit of the finest runs. Returns the ratio of the last two
+/// differences, or 0 if the last difference is at most `floor`.
 double extrapolate(StepErrors& series, double floor) {
   const std::size_t count = series.runs.size();
   const auto is_complete = [&](std::size_t i) { return series.runs[i]->is_complete(); };
@@ -97,11 +98,11 @@ StepErrors measure_steps(TrialRuns& trials, RunSettings settings, double wanted,
     const double error = series.finest();
     series.is_met = error <= wanted * scale && ratio <= kLargestRatio;
     if (series.is_met) return series;
-    series.shortcoming = fmt::format("with steps of {:.3g} s there are errors of {:.2g}", settings.step, error / scale);
+    series.shortcoming = fmt::format("steps of {:.3g} s have errors of {:.2g}", settings.step, error / scale);
     if (ratio == 0) break;
     idle = error > 0.9 * before ? idle + 1 : 0;
   }
-  if (series.has_errors()) series.shortcoming += ", and smaller ones do not help";
+  if (series.has_errors()) series.shortcoming += ", and smaller steps do not help";
   return series;
 }
 

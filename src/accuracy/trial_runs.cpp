@@ -11,7 +11,7 @@
 namespace flexarm {
 
 JudgedTimes judged_times(double until, double step, int most) {
-  // 1, 2, 5, 10, ... steps: many numbers of steps divide them.
+  // Intervals of 1, 2, 5, 10, ... steps, since many numbers of steps divide them.
   double steps = 1;
   for (int i = 0; until > most * steps * step; ++i) steps *= i % 3 == 1 ? 2.5 : 2;
   JudgedTimes times;
@@ -48,9 +48,9 @@ double TrialRuns::time_again(const RunSettings& settings) {
 void TrialRuns::require_room() const {
   if (go_on_ && !go_on_()) throw SearchEnded("interrupted");
   if (static_cast<int>(runs_.size()) + repetitions_ > limits_.runs)
-    throw SearchEnded(fmt::format("ended after {} runs, which are all that it may make", limits_.runs));
+    throw SearchEnded(fmt::format("ended after {} runs, the limit of the search", limits_.runs));
   if (seconds_ > limits_.seconds)
-    throw SearchEnded(fmt::format("ended after {:.3g} s of computing, which is all that it may take", limits_.seconds));
+    throw SearchEnded(fmt::format("ended after {:.3g} s of computing, the limit of the search", limits_.seconds));
 }
 
 TrialRun TrialRuns::made(const RunSettings& settings, double most_seconds) {
@@ -121,7 +121,7 @@ MotionDifference difference(const JudgedMotion& motion, const JudgedMotion& refe
 }
 
 bool moves(const JudgedMotion& motion) {
-  constexpr double kRoundOff = 1e-8;  // of Newton's method, too
+  constexpr double kRoundOff = 1e-8;  // also of Newton's method
   double farthest = 0;
   for (const Trajectory& point : motion.points) farthest = std::max(farthest, point.front().norm());
   return motion.largest_displacement() > kRoundOff * farthest;

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs of one scene with many settings, each made once, within bounds.
+/// Runs of one scene with many settings. Each run is made once, within limits.
 
 #include <deque>
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace flexarm {
 
-/// Times at which motions are compared: multiples of an interval from 0 on, which every step divides.
+/// Times at which motions are compared: multiples of an interval, from 0 on. Every step divides the interval.
 struct JudgedTimes {
   double interval = 0;  ///< [s]
   int intervals = 0;
@@ -22,57 +22,58 @@ struct JudgedTimes {
   double until() const { return interval * intervals; }
 };
 
-/// At most some `most` intervals to the time `until` [s], each a round multiple of the scene's `step` [s].
+/// Divides the time `until` [s] into about `most` intervals or fewer, each a round multiple of the scene's `step` [s].
 JudgedTimes judged_times(double until, double step, int most);
 
 struct TrialRun {
   RunSettings settings;
   JudgedMotion motion;
-  double seconds = 0;  ///< of the processor, for all steps
+  double seconds = 0;  ///< processor time of all steps
   long steps = 0, iterations = 0;
   int halvings = 0;
   std::size_t unknowns = 0;
-  std::string failure;       ///< why it has not come to its end; empty: it has
+  std::string failure;       ///< why it has not reached its end; empty if it has
   bool is_given_up = false;  ///< because it took too long
 
   bool is_complete() const { return failure.empty(); }
-  /// Of the processor for a simulated second [-].
+  /// Processor time per simulated second [-].
   double load(const JudgedTimes& times) const { return seconds / times.until(); }
 };
 
-/// No further run may begin: the reason.
+/// Thrown if no further run may begin. The message is the reason.
 class SearchEnded : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What commands a simulation before each of its steps.
+/// A function that gives commands to a simulation before each of its steps.
 using StepCommand = std::function<void(Simulation&)>;
 
 struct TrialLimits {
   int runs = 500;
-  double seconds = 600;  ///< of the processor, for all runs together
+  double seconds = 600;  ///< processor time of all runs together
 };
 
-/// Remembers all runs; references to them stay good.
+/// Makes runs and keeps them. References to runs stay valid.
 class TrialRuns {
  public:
-  /// `commands(simulation)`: what commands it; may be empty. `go_on()` is asked now and then; false: SearchEnded.
+  /// `commands(simulation)` returns what commands the simulation; it may be empty. `go_on()` is called now and then; if
+  /// it returns false, SearchEnded is thrown.
   TrialRuns(scene::SceneDescription scene, const JudgedTimes& times, const TrialLimits& limits,
             std::function<StepCommand(const Simulation&)> commands, std::function<bool()> go_on);
 
-  /// A run with these settings, made now unless it has been made already. A scene that cannot be built with them, a
-  /// step that fails, a run that takes more than `most_seconds` and one that is judged by other points than the first
-  /// one (tips of beams that cannot move where they are rigid) are runs that are not complete.
-  /// @throws SearchEnded where a limit is reached.
+  /// Returns the run with these settings, which is made unless it exists already. A run is incomplete if the scene
+  /// cannot be built with the settings, if a step fails, if it takes more than `most_seconds`, or if it is judged by
+  /// other points than the first run. (Tips of beams are such points; if a beam is rigid, its tip may be fixed.)
+  /// @throws SearchEnded if a limit is reached.
   const TrialRun& run(const RunSettings& settings, double most_seconds = std::numeric_limits<double>::infinity());
-  /// The same once more, for its time alone: the processor's seconds.
+  /// Repeats a run to time it. Returns the processor time [s].
   double time_again(const RunSettings& settings);
 
   const std::deque<TrialRun>& all() const { return runs_; }
   const scene::SceneDescription& scene() const { return scene_; }
   const JudgedTimes& times() const { return times_; }
-  double seconds() const { return seconds_; }  ///< of the processor, of all runs so far
+  double seconds() const { return seconds_; }  ///< processor time of all runs so far
 
  private:
   TrialRun made(const RunSettings& settings, double most_seconds);
@@ -88,19 +89,19 @@ class TrialRuns {
   std::map<RunSettings, TrialRun*> known_;
   double seconds_ = 0;
   int repetitions_ = 0;
-  std::size_t judged_ = 0;  // points, of the first run
+  std::size_t judged_ = 0;  // number of judged points in the first run
 };
 
-// ---------------------------------------------------------------- differences of motions, which add up
+// ---------------------------------------------------------------- differences of motions, which can be added
 
-/// A column for each judged point, of its ways at all times, weighted so that the norm of a column is the root mean
-/// square of the distance [m].
+/// One column for each judged point, with its displacements at all times. They are weighted so that the norm of a
+/// column is the root mean square of the distance [m].
 using MotionDifference = Eigen::MatrixXd;
 
 MotionDifference difference(const JudgedMotion& motion, const JudgedMotion& reference);
-/// Whether points come farther than round-off of where they are.
+/// Whether points move by more than the round-off of their positions.
 bool moves(const JudgedMotion& motion);
-/// Of the worst point [m].
+/// The norm of the worst point's column [m].
 double size(const MotionDifference& difference);
 
 }  // namespace flexarm

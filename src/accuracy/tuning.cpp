@@ -13,33 +13,34 @@
 namespace flexarm {
 namespace {
 
-/// Of the accuracy, what is aimed at: estimates are a few per cent off.
+/// The share of the accuracy at which the search aims, since estimates are a few per cent off.
 constexpr double kShare = 0.9;
-/// Relative errors of pilots: their steps need not be finer to measure meshes.
+/// Relative error of the pilot runs. Finer steps are not needed to measure meshes.
 constexpr double kPilotError = 0.02;
 const BeamResolution kPilotMesh{2, 3};
-/// Of the accuracy, what the reference may be off.
+/// The share of the accuracy by which the reference may be off.
 constexpr double kReferenceShare = 0.1;
 constexpr double kReferenceTolerance = 1e-9;
-/// References whose steps had to be halved, after which one is taken as it is, and by how much the next has more steps.
+/// If steps of a reference had to be halved, another one is made with kNextReference times as many steps. The last of
+/// kReferenceTries is taken as it is.
 constexpr int kReferenceTries = 4;
 constexpr double kNextReference = 1.2;
-/// Accuracies by which runs become finer where a speed is asked for.
+/// Accuracies with which the search measures in turn if a speed is requested.
 constexpr double kAccuracies[] = {0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-/// Newton's tolerances; what an iteration leaves is at most their square (docs/schemes.md).
+/// Tolerances of Newton's method. An iteration leaves an error of at most their square (docs/schemes.md).
 constexpr double kTolerances[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
 constexpr std::size_t kFinalists = 6;
-constexpr int kTries = 5;    // of steps, for each of them
-constexpr int kTimings = 3;  // repetitions, and how many of the best
-/// Runs that take so much longer than the best are given up.
+constexpr int kTries = 5;    // of steps, for each finalist
+constexpr int kTimings = 3;  // repetitions, and number of the best runs
+/// A run is given up if it takes longer than the best one by this factor.
 constexpr double kHopeless = 1.3;
-/// A step that is so near the one wanted is good enough.
+/// A number of steps that is as near as this to the wanted one is good enough.
 constexpr double kCloseEnough = 0.95;
-/// By which the number of steps changes at most, squared.
+/// The number of steps changes by the square root of the ratio of errors, which is limited to this.
 constexpr double kSteepest = 16;
 
-/// One that is far from being felt: a thousand steps leave a hundredth of the accuracy.
+/// The largest tolerance that makes no difference: a thousand steps with its square make a hundredth of the accuracy.
 double tolerance_for(double accuracy) {
   double tolerance = kTolerances[0];
   for (const double next : kTolerances)
@@ -47,7 +48,7 @@ double tolerance_for(double accuracy) {
   return tolerance;
 }
 
-/// The search, stage by stage; what it has come to can be taken at any time.
+/// The search, stage by stage. The result so far can be taken at any time.
 class Search {
  public:
   Search(TrialRuns& trials, const TuningGoal& goal, const TuningFreedom& freedom, const TuningProgress& progress)
@@ -55,7 +56,7 @@ class Search {
 
   /// @throws SearchEnded
   void run();
-  /// `ended`: why before its end; empty: it was not.
+  /// `ended`: why the search ended early; empty if it did not.
   TuningResult result(const std::string& ended);
 
  private:
@@ -76,7 +77,7 @@ class Search {
   double most_seconds() const {
     return goal_.load ? *goal_.load * trials_.times().until() : std::numeric_limits<double>::infinity();
   }
-  /// What is asked for, less what the reference may be off.
+  /// The allowed error: the requested one, less the error of the reference.
   double most_error() const { return std::max(*goal_.accuracy - reference_error_, 0.5 * *goal_.accuracy); }
   double error(const TrialRun& run) const;
   double seconds_of(const TrialRun& run) const;
@@ -125,12 +126,13 @@ void Search::look_at_scene() {
   if (!as_it_stands_->is_complete()) shortcomings_.push_back("the scene as it stands: " + as_it_stands_->failure);
 }
 
-// Errors of meshes and steps, as fine as the accuracy needs.
+// Measures errors of meshes and steps, as finely as the accuracy requires.
 void Search::measure(double accuracy) {
   RunSettings settings = own();
   const std::vector<std::string> schemes = schemes_alike(trials_.scene().integrator, freedom_.any_scheme);
   settings.tolerance = tolerance_ = tolerance_for(accuracy);
-  // Steps on a mesh of which none can be far off, for the pilots' step; then meshes with that; then steps on the mesh.
+  // First steps on a mesh that cannot be far off, for the step of the pilots. Then meshes with that step. Then steps on
+  // the chosen mesh.
   progress_(0.1, "steps");
   MeshFreedom meshes{{}, freedom_.rigid_beams, false};
   for (BeamResolution& beam : settings.beams) {
@@ -138,9 +140,9 @@ void Search::measure(double accuracy) {
     if (meshes.is_free.back()) beam = kPilotMesh;
   }
   const StepErrors pilot = measure_steps(trials_, settings, std::max(kPilotError, accuracy), most_seconds());
-  if (!pilot.has_errors()) throw SearchEnded("no run comes to its end: " + pilot.shortcoming);
+  if (!pilot.has_errors()) throw SearchEnded("no run was completed: " + pilot.shortcoming);
   const double scale = pilot.runs.back()->motion.largest_displacement();
-  if (!moves(pilot.runs.back()->motion)) throw SearchEnded("nothing moves that could be judged");
+  if (!moves(pilot.runs.back()->motion)) throw SearchEnded("no probe or tip moves, so that no error can be measured");
   settings.step = pilot.settings.step;
   progress_(0.2, "meshes");
   const MeshErrors mesh_errors = measure_meshes(trials_, settings, meshes, kReferenceShare * accuracy * scale);
@@ -158,7 +160,7 @@ void Search::measure(double accuracy) {
   pool_ = CandidatePool(mesh_errors, std::move(steps), trials_.all(), scale, trials_.times().intervals);
 }
 
-// Measures as finely as the speed lets a run be; how fine that is.
+// Measures as finely as the speed allows, and returns the accuracy that this gives.
 double Search::measure_for_load() {
   double found = kAccuracies[0];
   for (const double accuracy : kAccuracies) {
@@ -171,9 +173,9 @@ double Search::measure_for_load() {
   return found;
 }
 
-// As much finer than what is asked for as needed to judge it. Steps of em4 that go back through the damping of a beam
-// err more than longer ones, from which their error was predicted; that they had to be halved tells it (accuracy.md),
-// and slightly shorter ones are good.
+// Makes a run that is so much more accurate than requested that others can be judged by it. Steps of em4 that go back
+// through the damping of a beam have larger errors than longer steps, from which the error was predicted. If steps had
+// to be halved, that is the cause (accuracy.md), and slightly shorter steps are good.
 void Search::make_reference(double accuracy) {
   progress_(0.7, "reference");
   const Candidate finer = pool_.reference(kReferenceShare * accuracy);
@@ -218,7 +220,7 @@ void Search::fit_error(RunSettings settings) {
   }
 }
 
-// The same until the run just keeps the speed.
+// The same, until the run just keeps the speed.
 void Search::fit_load(RunSettings settings) {
   const double interval = trials_.times().interval;
   int parts = static_cast<int>(std::lround(interval / settings.step));
@@ -240,7 +242,7 @@ void Search::try_finalists(double accuracy) {
   }
 }
 
-// Goes on as long as the best run gets better. The time that is saved allows smaller steps.
+// Loosens Newton's tolerance as long as the best run gets better. The time that is saved allows smaller steps.
 void Search::loosen_tolerance() {
   for (const double tolerance : kTolerances) {
     const TrialRun* before = best();
@@ -254,7 +256,7 @@ void Search::loosen_tolerance() {
   }
 }
 
-// Times of the best and of the scene as it stands, in turns: medians.
+// Times the best runs and the scene as it stands, in turns. Medians count.
 void Search::time_finalists() {
   std::vector<const TrialRun*> good;
   for (const TrialRun& run : trials_.all())
@@ -292,7 +294,7 @@ double Search::seconds_of(const TrialRun& run) const {
   return times[times.size() / 2];
 }
 
-// What was reached where nothing keeps what was asked for.
+// The best result if no run meets the goal.
 const TrialRun* Search::most_accurate() const {
   const TrialRun* found = nullptr;
   for (const TrialRun& run : trials_.all())
@@ -300,7 +302,7 @@ const TrialRun* Search::most_accurate() const {
   return found;
 }
 
-// What comes nearest to a reference where none was made.
+// The substitute for a reference that was not made: the run with the most effort.
 const TrialRun* Search::finest() const {
   const auto effort = [](const TrialRun& run) {
     return static_cast<double>(run.iterations) * mesh_cost(run.settings.beams);
@@ -324,10 +326,10 @@ TuningResult Search::result(const std::string& ended) {
   const TrialRun* chosen = reference_ ? best() : nullptr;
   out.is_met = chosen != nullptr;
   if (reference_ && !chosen) chosen = most_accurate();
-  if (out.is_met) shortcomings_.clear();  // of the way to it
+  if (out.is_met) shortcomings_.clear();  // those on the way do not matter
   if (!ended.empty()) shortcomings_.push_back(ended);
   if (reference_ && !out.reference)
-    shortcomings_.emplace_back("no reference was made: errors are against the finest run");
+    shortcomings_.emplace_back("there is no reference run: errors are relative to the finest run");
   for (const TrialRun& run : trials_.all()) {
     const double off = reference_ && run.is_complete() ? error(run) : 0;
     TunedRun row{run.settings, seconds_of(run), times_.count(&run) > 0, run.steps, run.iterations, run.unknowns,
@@ -359,7 +361,7 @@ std::vector<std::string> schemes_alike(const IntegratorDescription& integrator, 
   std::vector<std::string> names = {integrator.scheme};
   const auto is_alike = [&](const Scheme& other) {
     const bool is_plain = !own.conserves_energy && !(own.name == "em0");
-    if (is_plain) return false;  // its dissipation, or what is to be studied, is what the scene wants
+    if (is_plain) return false;  // the scene wants its dissipation, or wants to study it
     return other.conserves_momenta && (other.conserves_energy || !own.conserves_energy);
   };
   for (const char* name : {"em", "em0", "em4"}) {

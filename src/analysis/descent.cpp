@@ -11,27 +11,30 @@
 namespace flexarm {
 namespace {
 
-/// Radii of the trust region: at first, at most [rad, or in units of the length scale].
+/// Radius of the trust region: at the start, and the largest [rad, or in units of the length scale].
 constexpr double kFirstRadius = 0.5, kLargestRadius = 2;
-/// Below this a step is none.
+/// If the radius becomes smaller than this, the search has failed.
 constexpr double kSmallestRadius = 1e-14;
-/// Shares of the promised fall of the potential: below which a step is taken back, the radius shrinks, or grows.
+/// Ratio of the actual to the predicted fall of the potential. Below kTaken a step is rejected, below kPoor the radius
+/// shrinks, above kGood it grows.
 constexpr double kTaken = 1e-3, kPoor = 0.25, kGood = 0.7;
 constexpr double kShrinks = 0.25, kGrows = 2;
 constexpr int kMostSteps = 200;
-/// A second look at the same radius ends a search by bisection.
+/// Number of bisections in the search for the shift of the curvature.
 constexpr int kBisections = 100;
-/// Of the depth that a stop gives way, what a step into it may take; and how far a step out of it goes beyond it.
+/// A step into a stop takes at most the part kPartOfGive of the depth by which the stop gives way. A step out of a stop
+/// goes kBeyond beyond it.
 constexpr double kPartOfGive = 0.1, kBeyond = 1e-12;
-/// Ways that are no more than a step into a stop.
+/// Steps of this length or less may lead into a stop. They are accepted even if the force grows, as long as the
+/// potential changes by no more than round-off.
 constexpr double kTiny = 1e-10;
-/// Share of a coordinate in a motion that counts.
+/// Share of a coordinate in a motion above which it takes part.
 constexpr double kTakesPart = 1e-3;
-/// Curvatures beside those that weight and loads make, from which on round-off does not matter.
+/// Relative to the curvature that weight and loads make: for larger curvatures round-off does not matter.
 constexpr double kSoft = 1e-2;
-/// The same, below which Newton's method may lose its way.
+/// The same: for smaller curvatures Newton's method may fail.
 constexpr double kFirm = 1e-3;
-/// Steps of Newton's method become at least so much shorter until they are round-off.
+/// If a step of Newton's method is not shorter than the last one by this factor, it is round-off.
 constexpr double kShorter = 0.5;
 
 Eigen::MatrixXd columns_and_rows(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& indices) {
@@ -51,7 +54,7 @@ bool Descent::begin(const State& state) {
   return potentials_.begin(state);
 }
 
-/// Of the coordinates that are not fixed, where the fixed ones have gone by `ways`.
+/// Modes of the coordinates that are not fixed, after the fixed ones have moved by `ways`.
 Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>& is_fixed,
                               const Eigen::VectorXd& ways) {
   std::vector<Eigen::Index> open;
@@ -69,7 +72,7 @@ Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>&
   modes.motions = Eigen::MatrixXd::Zero(at.force.size(), size);
   for (Eigen::Index i = 0; i < size; ++i) modes.motions.row(open[i]) = scale[i] * pairs.vectors.row(i);
   modes.force = modes.motions.transpose() * force;
-  // Only that of soft motions matters.
+  // The round-off of beams matters for soft motions only.
   const auto soft = std::count_if(modes.curvature.data(), modes.curvature.data() + size,
                                   [&](double curvature) { return curvature < kSoft * potentials_.reference(); });
   modes.round_off.resize(size);
@@ -106,13 +109,13 @@ Eigen::VectorXd Descent::step_in(const Modes& modes, double radius) {
     (shifted(middle) > radius ? low : high) = middle;
   }
   const double length = shifted(high);
-  // No force along the lowest curvature: to one side.
+  // There is no force along the lowest curvature, which is negative: go to one side.
   if (modes.curvature[lowest] < -modes.round_off[lowest] && length < radius)
     step[lowest] += (modes.force[lowest] > 0 ? -1 : 1) * std::sqrt(radius * radius - length * length);
   return step;
 }
 
-/// Ends the way of the coordinate that crosses a bound first; false if none does.
+/// Ends the motion of the coordinate that crosses a bound first, at this bound. Returns false if none does.
 bool Descent::stop_at_bound(const JointPotential& at, std::vector<bool>& is_fixed, Eigen::VectorXd& ways) const {
   double earliest = 1;
   const JointPotentials::Bound* met = nullptr;
@@ -137,7 +140,7 @@ bool Descent::stop_at_bound(const JointPotential& at, std::vector<bool>& is_fixe
     wanted = std::clamp(push, kBeyond, std::min(kPartOfGive * met->give, kFirstRadius / scale));
   }
   const double way = scale * met->inward * (wanted - depth);
-  // Not farther than it would have gone.
+  // Not farther than without the bound.
   ways[i] = std::abs(way) < std::abs(ways[i]) ? way : ways[i];
   is_fixed[met->axis] = true;
   return true;
@@ -198,7 +201,7 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
       for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
         is_minimum = is_minimum && whole.curvature[i] >= -whole.round_off[i];
       if (is_minimum) {
-        // What round-off hides in the worst case is often still to be seen.
+        // The estimate of round-off is for the worst case. Newton's method can often do better.
         bool is_sharp = true;
         for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
           is_sharp = is_sharp && (whole.curvature[i] <= whole.round_off[i] || whole.way(i) <= tolerance_);
@@ -213,13 +216,13 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
     bool is_taken = false;
     double share = -1;
     if (potentials_.move(at, step.ways, next.state, result) && potentials_.look(next)) {
-      // Hermite's rule along the way that it came to.
+      // The fall of the potential along the actual motion, by Hermite's rule.
       const Eigen::VectorXd ways = potentials_.ways(at.state, next.state);
       const double fall = -0.5 * ways.dot(at.force + next.force) -
                           (ways.dot(at.curvature * ways) - ways.dot(next.curvature * ways)) / 12;
       const double noise = potentials_.round_off_of_loads(ways);
       share = step.promise > 0 ? fall / step.promise : -1;
-      // At the corner of a stop the model knows one side alone.
+      // At the corner of a stop, the quadratic model knows one side only.
       const bool is_tiny = ways.norm() <= kTiny;
       is_taken = share > kTaken || (std::abs(fall) <= noise && (is_tiny || next.force.norm() < at.force.norm()));
     }

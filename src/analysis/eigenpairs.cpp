@@ -28,7 +28,7 @@ class ShiftedSolver {
   }
 
  private:
-  mutable LinearSolver solver_;  // its scratch
+  mutable LinearSolver solver_;  // mutable because of its scratch memory
   std::vector<double> values_;
 };
 
@@ -46,8 +46,8 @@ class UndampedOperation : public LinearOperation {
   ShiftedSolver solver_;
 };
 
-/// The linearisation with the second unknown lambda x / s, {x, z} -> {p, q}:
-/// (K + s D + s^2 M) p = -(s D + s^2 M) x - s^2 M z,  q = x + p. Its eigenvalues are 1/(lambda/s - 1).
+/// Makes the problem linear by a second unknown z = lambda x / s. The operation {x, z} -> {p, q} is (K + s D + s^2 M) p
+/// = -(s D + s^2 M) x - s^2 M z,  q = x + p. Its eigenvalues are 1/(lambda/s - 1).
 class DampedOperation : public LinearOperation {
  public:
   DampedOperation(const LinearisedMotion& motion, double shift)

@@ -1,5 +1,5 @@
 #pragma once
-/// The eigenvalues of small motions closest to zero.
+/// Eigenpairs of small motions whose eigenvalues are nearest to zero.
 
 #include "analysis/largest_eigenpairs.h"
 #include "analysis/linearised_motion.h"
@@ -10,10 +10,10 @@ namespace flexarm {
 /// @throws std::runtime_error if the shifted matrix is singular or the iteration does not converge.
 std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shift, int count);
 
-/// The `count` pairs of (lambda^2 M + lambda D + K) phi = 0 with lambda nearest to `shift` [1/s], nearest first; shift
-/// > 0. Stiffness-proportional damping eta makes eigenvalues crowd at -1/eta; of a large model's, those that cannot be
-/// told apart are left out.
-/// @throws std::runtime_error as above.
+/// The `count` pairs of (lambda^2 M + lambda D + K) phi = 0 with lambda nearest to `shift` [1/s], nearest first;
+/// shift > 0. Stiffness-proportional damping eta makes eigenvalues crowd at -1/eta. For large models, those that the
+/// iteration cannot separate are left out.
+/// @throws std::runtime_error as undamped_pairs().
 std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, double shift, int count);
 
 }  // namespace flexarm

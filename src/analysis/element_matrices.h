@@ -1,6 +1,7 @@
 #pragma once
-/// Matrices of small motions of a beam's element about a configuration at rest, by {displacement, spin} of its nodes.
-/// Their sizes are known at run time only, so that code that uses them is compiled once for all orders.
+/// Matrices of an element of a beam for small motions about a configuration at rest, with respect to {displacement,
+/// spin} of its nodes. Their sizes are known at run time only, so that code that uses them is compiled once for all
+/// orders.
 
 #include <vector>
 
@@ -13,22 +14,23 @@ namespace flexarm {
 
 class SparseTangent;
 
-/// Stiffness of the material alone, without what stress adds to it.
+/// Stiffness of the material, without the geometric stiffness.
 template <int Nodes>
 Eigen::MatrixXd material_stiffness(const BeamElement<Nodes>& element, const State& state);
 
-/// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
+/// Second derivative of the strain energy by strains alone: the stiffness of the material, tested with variations of
+/// strains.
 template <int Nodes>
 Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const State& state);
 
-/// d{Gamma, K} of every stiffness point, 6 x 6 Nodes.
+/// Variations d{Gamma, K} at all stiffness points, each 6 x 6 Nodes.
 template <int Nodes>
 std::vector<Eigen::MatrixXd> strain_variations(const BeamElement<Nodes>& element, const State& state);
 
 template <int Nodes>
 Eigen::MatrixXd mass_matrix(const BeamElement<Nodes>& element, const State& state);
 
-/// Adds the matrix of the element whose first block is `first`.
+/// Adds the matrix of an element to `sum`, in which `first` is the element's first block.
 void add_element(SparseTangent& sum, std::size_t first, const Eigen::MatrixXd& matrix);
 
 }  // namespace flexarm

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// `visit(constants, kinematics, generalised shape functions)` of every stiffness point.
+/// Calls `visit(constants, kinematics, generalised shape functions)` for every stiffness point.
 template <int Nodes, class Visit>
 void for_each_point(const BeamElement<Nodes>& element, const State& state, const Visit& visit) {
   const ElementConfiguration<Nodes> nodes(element, state);
@@ -23,7 +23,7 @@ void for_each_point(const BeamElement<Nodes>& element, const State& state, const
   }
 }
 
-/// d{Gamma, K} of a point by {displacement, spin} of the nodes.
+/// Variation d{Gamma, K} at a point, by {displacement, spin} of the nodes.
 template <int Nodes>
 Eigen::MatrixXd strain_variation(const PointKinematics& point, const NodalValues<Nodes>& derivative,
                                  const GeneralisedShapeFunctions<Nodes>& spins) {

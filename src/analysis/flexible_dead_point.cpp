@@ -14,17 +14,18 @@
 namespace flexarm {
 namespace {
 
-/// A small motion [rad, or in units of the length scale]. Strains are its square, far above round-off.
+/// A small motion [rad, or in units of the length scale]. Its strains are of second order, and still far above
+/// round-off.
 constexpr double kWay = 1e-5;
-/// Drag beside the stiffness: so little that the answer to general forces is what nothing holds, ...
+/// Drag, relative to the stiffness. It is so small that general forces move mainly what nothing holds.
 constexpr double kLittleDrag = 1e-13;
-/// ... and enough to hold that while strains are relieved: the stiffness of a dead point, kWay^2, is less.
+/// A larger drag, which holds free motions while strains are relieved: the stiffness at a dead point, kWay^2, is less.
 constexpr double kHoldingDrag = 1e-9;
 constexpr int kRelief = 2;
-/// General motions that are tried: one may go the way of a branch by chance.
+/// Number of general motions that are tried, since one of them may follow a branch by chance.
 constexpr int kMotions = 3;
-/// What is left of the strain energy of a motion at a dead point, and how much of it there is at least, beside the
-/// stiffness times kWay^4. Of motions that are free it is relieved to kWay^2 of it and less.
+/// A motion is at a dead point if more than kLeft of its strain energy is left after the relief, and more than kStrains
+/// times the stiffness times kWay^4. In free motions, kWay^2 of the energy or less is left.
 constexpr double kLeft = 1e-2, kStrains = 1e-6;
 
 Model without_prestrains(Model model) {
@@ -32,7 +33,7 @@ Model without_prestrains(Model model) {
   return model;
 }
 
-/// The unloaded mechanism, moved by hand.
+/// The mechanism without loads, which is moved step by step.
 class Unloaded {
  public:
   Unloaded(const Model& model, const State& start, double contact_time)
@@ -41,14 +42,14 @@ class Unloaded {
   const State& state() const { return state_; }
   double strain_energy() const { return energies(model_, scheme_, state_).strain; }
   StepSystem& system() { return system_; }
-  /// Forces that balance its strains, with tangents for answers.
+  /// The forces that balance the strains. Also factorises the tangent for answer().
   Eigen::VectorXd forces(double drag) {
     system_.begin_equilibrium(state_, 0, drag);
     if (!system_.evaluate(true) || !system_.tangent().factorise())
       throw std::runtime_error("the stiffness is not finite");
     return -system_.residual();
   }
-  /// One entry per unknown.
+  /// The displacements by these forces, one entry per unknown.
   Eigen::VectorXd answer(Eigen::VectorXd forces) {
     if (!system_.tangent().solve(forces)) throw std::runtime_error("the stiffness is not finite");
     return forces;
@@ -75,7 +76,7 @@ class Unloaded {
   State state_;
 };
 
-/// Of elements against displacements by the length scale and turns by 1 rad, the mean of all nodes [J].
+/// Stiffness of elements against displacements by the length scale and rotations by 1 rad, the mean over all nodes [J].
 double typical_stiffness(const Model& model, const State& state) {
   ComplexVector6 unit = ComplexVector6::Ones();
   unit.head<3>() *= model.length_scale;
@@ -105,19 +106,19 @@ std::string most_strained_link(const Model& model, const State& state) {
   return name;
 }
 
-/// See link_at_dead_point(), in one motion of those that are free.
+/// See link_at_dead_point(); for one general motion.
 std::string link_strained_in_second_order(const Model& model, const State& start, double contact_time,
                                           const Eigen::VectorXd& general) {
   Unloaded mechanism(model, start, contact_time);
   const double stiffness = typical_stiffness(model, start), before = mechanism.strain_energy();
   const double drag = kLittleDrag * stiffness;
   mechanism.forces(drag);
-  // Inverse iteration: what is soft, but not free, goes with the square of the drag.
+  // Inverse iteration: what is soft but not free decreases with the square of the drag.
   const Eigen::VectorXd free = mechanism.on_bodies(mechanism.answer(mechanism.on_bodies(general))).normalized();
   const Eigen::VectorXd motion = mechanism.answer(free);
-  if (!mechanism.system().tangent().expanded_solution()) return "";  // of a matrix, not of a tree
+  if (!mechanism.system().tangent().expanded_solution()) return "";  // the tangent is a matrix, not a tree
   const NodeWays ways(model, node_motion_of_solution(mechanism.system()));
-  // Twice the energy of strains and drag: where nothing is free, strains take far more.
+  // The product is twice the energy of strains and drag. If nothing is free, strains have by far the most of it.
   if (motion.dot(free) > 2 * drag * ways.sum_of_squares()) return "";
   mechanism.move(kWay / ways.largest() * motion);
   const double strained = mechanism.strain_energy() - before;

@@ -1,5 +1,5 @@
 #pragma once
-/// Loops closed over flexible links that stand at a dead point.
+/// Dead points of loops that are closed over flexible links.
 
 #include <string>
 
@@ -8,9 +8,9 @@
 
 namespace flexarm {
 
-/// Name of the link that is strained most where links, unloaded, are free to move to first order and no further: their
-/// loop may go on in more than one way, which small disturbances decide. Empty: there is none, or what beams there are
-/// resists in first order. `contact_time`: of stops (Scheme::contact_time) [s].
+/// If links can move freely to first order, but not to second order, returns the name of the link that is strained
+/// most; loads do not count. The loop may then go on in more than one way, and small disturbances decide which. Empty
+/// if there is no such link, or if beams resist in first order. `contact_time`: of stops (Scheme::contact_time) [s].
 /// @throws std::runtime_error if the stiffness is not finite.
 std::string link_at_dead_point(const Model& model, const State& start, double contact_time);
 

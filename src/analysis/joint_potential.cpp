@@ -14,11 +14,11 @@
 namespace flexarm {
 namespace {
 
-/// Matrices of more coordinates would be large.
+/// Most coordinates: matrices of more of them would be large.
 constexpr std::size_t kMostAxes = 300;
-/// Larger turns in an update are shortened where the whole update has led nowhere [rad].
+/// If whole updates lead to no equilibrium, updates with larger rotations are shortened to this [rad].
 constexpr double kLargestTurn = 1;
-/// Of what loops are closed by, a coordinate with limits counts for so much.
+/// Weight of a coordinate with limits, when coordinates are chosen to close loops. The others have 1.
 constexpr double kShareOfLimited = 0.1;
 /// Columns of constraints are independent if their pivots are larger than this part of the largest entry.
 constexpr double kIndependentColumn = 1e-6;
@@ -83,7 +83,7 @@ double JointPotentials::position(const State& state, std::size_t axis) const {
   return coordinate.is_angle ? 0.0 : state.released[coordinate.joint].displacement[coordinate.component];
 }
 
-/// Numbers of the coordinates that are left when loops have taken those by which they are closed best: their columns of
+/// Indices of the coordinates that remain independent. The others are the ones that close loops best: their columns of
 /// the constraints' derivatives are independent.
 std::vector<std::size_t> JointPotentials::independent() const {
   const Matrix whole = tangent_matrix();
@@ -91,7 +91,7 @@ std::vector<std::size_t> JointPotentials::independent() const {
                           static_cast<Eigen::Index>(multipliers_.size()));
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const Axis& axis = coordinates_[i];
-    // Stops are bounds of axes: coordinates that have some are the last to be taken.
+    // Stops should stay bounds of axes, so coordinates with stops are the last to be chosen to close loops.
     const double share = (model_.coordinates[axis.coordinate].limit ? kShareOfLimited : 1.0) / axis.scale;
     for (std::size_t m = 0; m < multipliers_.size(); ++m)
       columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)) =
@@ -135,7 +135,7 @@ bool JointPotentials::begin(const State& state) {
   return std::isfinite(reference_) && reference_ > 0;
 }
 
-/// Rows of the coordinates are those of a unit matrix.
+/// Replaces the rows of the joint coordinates by those of a unit matrix.
 void JointPotentials::hold_joints() {
   for (const Axis& axis : axes_) {
     const Coordinate& coordinate = model_.coordinates[axis.coordinate];
@@ -143,7 +143,8 @@ void JointPotentials::hold_joints() {
   }
 }
 
-/// The stiffness has what they do times the second derivatives of constraints.
+/// Finds the multipliers of loops. The stiffness contains the multipliers times the second derivatives of the
+/// constraints.
 bool JointPotentials::find_multipliers(JointPotential& at) {
   at.multipliers = Eigen::VectorXd::Zero(tangent().unknowns());
   if (multipliers_.empty()) return true;
@@ -264,7 +265,7 @@ double JointPotentials::round_off_of_loads(const Eigen::VectorXd& motion) const 
   return kStiffnessRoundOff * reference_ * motion.norm();
 }
 
-/// Terms of weight and loads; of springs and stops of coordinates; of beams.
+/// Adds up the terms of weight and loads, of springs and stops of coordinates, and of beams.
 Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen::MatrixXd& motions) const {
   Eigen::VectorXd round_off(motions.cols());
   std::optional<LinearisedMotion> beams;

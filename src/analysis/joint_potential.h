@@ -12,72 +12,77 @@
 
 namespace flexarm {
 
-/// What the potential does about a configuration while beams follow the joints in equilibrium. Ways of coordinates
-/// count in rad, or over the model's length scale.
+/// The potential near a configuration, if beams follow the joints in equilibrium. Motions of coordinates, called ways,
+/// are in rad, or in units of the model's length scale.
 struct JointPotential {
   State state;                 ///< the configuration
   Eigen::VectorXd force;       ///< gradient, per coordinate [J]
   Eigen::MatrixXd curvature;   ///< symmetric [J]
-  Eigen::MatrixXd motions;     ///< of all unknowns, a column per coordinate, for a way of 1
-  Eigen::VectorXd correction;  ///< Newton's step of beams while joints stand
-  /// Of all unknowns: multipliers of loops that balance what they are found with, others zero.
+  Eigen::MatrixXd motions;     ///< of all unknowns; one column per coordinate, for a way of 1
+  Eigen::VectorXd correction;  ///< Newton's step of beams while joints stand still
+  /// Per unknown: the multipliers of loops that best balance the residual; zero for all other unknowns.
   Eigen::VectorXd multipliers;
 };
 
-/// Looks at JointPotential, and moves along it. With b the unknowns of beams, q the coordinates, and K the static
-/// tangent,
+/// Computes a JointPotential, and moves along it. With the unknowns b of beams, the coordinates q, and the static
+/// tangent K,
 ///   curvature = K_qq - K_qb K_bb^-1 K_bq,   force = g_q - K_qb K_bb^-1 g_b.
-/// Where multipliers close loops, q are as many coordinates as loops leave, those by which the others are found best;
-/// the others and the multipliers are among b, whose solution closes the loops: these are the reduced gradient and
-/// Hessian of the constrained potential.
+/// If multipliers close loops, q contains as many coordinates as the loops leave free, chosen so that they determine
+/// the other coordinates well. These and the multipliers belong to b, whose solution closes the loops. Then force and
+/// curvature are the reduced gradient and Hessian of the constrained potential.
 class JointPotentials {
  public:
-  /// Whether there is a potential: no load circulates, and at most a few hundred coordinates are not prescribed.
+  /// Whether there is a potential: no load is circulatory, there are at most a few hundred coordinates, and at least
+  /// one of them is an unknown.
   static bool exist(const Model& model, const State& state);
 
-  /// `scheme`: made by statics_of(), with interpolation that knows no past. Both references must outlive this.
+  /// `scheme`: made by statics_of(), with an interpolation that does not depend on the past. `model` and `settings`
+  /// must outlive this object.
   JointPotentials(const Model& model, const Scheme& scheme, const StepSettings& settings);
 
-  /// Of the unknowns.
+  /// A joint coordinate that is an unknown.
   struct Axis {
     int equation;
     std::size_t coordinate;
     double scale;  ///< way per unit of the coordinate: 1, or 1/m
   };
-  /// A stop of a coordinate or of one that follows it, in the coordinate's own unit.
+  /// A stop of a coordinate, or of one that follows it. All values are in the unit of the coordinate.
   struct Bound {
     std::size_t axis;
-    double place, inward;  ///< inward: 1 where the coordinate is stopped above the place, -1 below it
+    double place, inward;  ///< inward: 1 if the stop acts above the place, -1 below it
     double stiffness, give;
   };
   const std::vector<Axis>& axes() const { return axes_; }
   const std::vector<Bound>& bounds() const { return bounds_; }
-  /// There are no other unknowns.
+  /// Whether the axes are the only unknowns.
   bool is_rigid() const { return axes_.size() == static_cast<std::size_t>(system_.degrees_of_freedom().unknowns); }
-  /// Of an axis; of a free rotation, 0.
+  /// Position of an axis; 0 for a component of a free rotation.
   double position(const State& state, std::size_t axis) const;
 
-  /// Largest curvature that weight and loads make, or what stands for it [J]; 0: nothing acts.
+  /// Largest curvature that weight and loads make; without these, the largest moment of the residual [J]. 0: nothing
+  /// acts.
   double reference() const { return reference_; }
-  /// Chooses it, and the axes. False if nothing moves there, or something is not finite.
+  /// Chooses the axes and reference() for this state. Returns false if nothing can move or acts there, or if something
+  /// is not finite.
   bool begin(const State& state);
-  /// Chooses the axes of loops anew, and their bounds. True if these are other ones.
+  /// Chooses the axes of loops anew, and their bounds. Returns true if the axes have changed.
   bool choose_axes(const State& state);
 
-  /// Fills in everything but the state, which is given. False if the tangent is not finite, or singular.
+  /// Computes all members of `at` from its state. Returns false if the tangent is not finite, or singular.
   bool look(JointPotential& at);
-  /// Moves the joints by `ways` from there, beams after them, and lets these come to rest. False if they do not.
+  /// Moves the joints by `ways` from there, and beams with them. Then brings the beams to rest. Returns false if that
+  /// fails.
   bool move(const JointPotential& from, const Eigen::VectorXd& ways, State& to, StepResult& result);
-  /// Loads times `factor` act on beams, while joints are held where they are. False if these do not come to rest.
+  /// Brings beams to rest under `factor` times the loads, while joints are held. Returns false if that fails.
   bool rest(State& state, double factor, StepResult& result);
-  /// One step of Newton's method along `ways`, with the correction; returns its UnknownScales::norm(), infinite where
-  /// it fails.
+  /// Makes one step of Newton's method along `ways`, with the correction of beams. Returns its UnknownScales::norm(),
+  /// infinite if it fails.
   double shift(const JointPotential& from, const Eigen::VectorXd& ways, State& to);
-  /// Ways of coordinates between two configurations.
+  /// The ways of coordinates between two configurations.
   Eigen::VectorXd ways(const State& from, const State& to) const;
-  /// Of forces and curvatures along motions of the coordinates, columns: what round-off may make of them [J].
+  /// For each motion of the coordinates (a column): by how much round-off may change its force and curvature [J].
   Eigen::VectorXd round_off(const JointPotential& at, const Eigen::MatrixXd& motions) const;
-  /// The same, by weight and loads alone.
+  /// The part of round_off() by weight and loads alone.
   double round_off_of_loads(const Eigen::VectorXd& motion) const;
 
  private:
@@ -97,10 +102,10 @@ class JointPotentials {
   const Scheme scheme_;
   const StepSettings& settings_;
   StepSystem system_;
-  std::vector<Axis> coordinates_;  // all that nothing prescribes
+  std::vector<Axis> coordinates_;  // all that are unknowns
   std::vector<Axis> axes_;
   std::vector<Bound> bounds_;
-  std::vector<int> multipliers_;  // equations
+  std::vector<int> multipliers_;  // their equations
   double reference_ = 0;
 };
 

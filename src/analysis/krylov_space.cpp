@@ -25,7 +25,8 @@ void KrylovSpace::grow(Eigen::Index size) {
     if (!std::isfinite(whole)) throw std::runtime_error("a vector of the eigenvalue iteration is not finite");
     coefficients_.col(size_).head(vectors_) = take_off_basis(image);
     const double rest = image.norm();
-    // What round-off leaves is no direction: the space has all that comes of this vector, and goes on with another one.
+    // A remainder of round-off is no direction: the space already contains all images of this vector. Continue with
+    // another one.
     if (rest <= 1e-14 * whole) {
       add_random_vector();
     } else {
@@ -42,8 +43,8 @@ void KrylovSpace::add_random_vector() {
   basis_.col(vectors_++) = vector.normalized();
 }
 
-/// Leaves of `vector` what is orthogonal to the basis, and returns its parts along it. Twice is enough for
-/// orthogonality to round-off (Giraud, Langou, Rozloznik and van den Eshof, 2005).
+/// Removes from `vector` its parts along the basis, and returns them. Two passes are enough for orthogonality to
+/// round-off (Giraud, Langou, Rozloznik and van den Eshof, 2005).
 Eigen::VectorXd KrylovSpace::take_off_basis(Eigen::VectorXd& vector) const {
   const auto vectors = basis_.leftCols(vectors_);
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(vectors_);

@@ -9,17 +9,17 @@ namespace flexarm {
 
 class LinearOperation;
 
-/// An orthonormal basis that grows, and what the operation A does to its first k vectors V_k:
-/// A V_k = V_{k + kBlock} H, with `coefficients(k)` = H, of k + kBlock rows and k columns.
+/// An orthonormal basis that grows, and the effect of the operation A on its first k vectors V_k: A V_k = V_{k +
+/// kBlock} H, where H is coefficients(), with k + kBlock rows and k columns, and k is size().
 class KrylovSpace {
  public:
-  /// An eigenvalue that comes up to so many times is found so many times: beams with round sections have each twice.
+  /// Eigenvalues up to this multiplicity are found completely. Beams with round sections have each eigenvalue twice.
   static constexpr Eigen::Index kBlock = 4;
 
-  /// Begins with the same random vectors on every machine. `most`: of the sizes that it may have.
+  /// Begins with the same random vectors on every machine. `most`: the largest size.
   KrylovSpace(const LinearOperation& operation, Eigen::Index most);
 
-  /// Up to k = `size`: one product with the operation for each vector.
+  /// Grows to k = `size`, by one product with the operation for each vector.
   void grow(Eigen::Index size);
 
   Eigen::Index size() const { return size_; }

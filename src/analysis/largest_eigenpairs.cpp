@@ -15,7 +15,7 @@ namespace {
 
 /// Dense matrices of more rows would take minutes.
 constexpr Eigen::Index kMostRows = 1000;
-/// Of a pair: its residual over its value.
+/// Largest residual of a converged pair, relative to its value.
 constexpr double kAccuracy = 1e-13;
 
 Eigenpairs all_pairs(const LinearOperation& operation) {
@@ -44,14 +44,14 @@ Eigenpairs largest(const Eigenpairs& pairs, int count) {
   return out;
 }
 
-/// Of the operation in the space, `count` at most, those that are the operation's own to round-off.
+/// At most `count` eigenpairs in the space: those that are pairs of the operation itself, to round-off.
 Eigenpairs converged_pairs(const KrylovSpace& space, int count) {
   const Eigen::Index size = space.size();
   const Eigenpairs ritz = largest(dense_eigenpairs(space.coefficients().topRows(size)), count);
   Eigenpairs out{Eigen::VectorXcd(ritz.values.size()), Eigen::MatrixXcd(space.basis().rows(), ritz.values.size())};
   Eigen::Index found = 0;
   for (Eigen::Index k = 0; k < ritz.values.size(); ++k) {
-    // What leads out of the space is the residual.
+    // The residual is the part that leaves the space.
     const Eigen::VectorXcd rest = space.coefficients().bottomRows(KrylovSpace::kBlock) * ritz.vectors.col(k);
     if (!(rest.norm() <= kAccuracy * std::abs(ritz.values[k]))) continue;
     out.values[found] = ritz.values[k];
@@ -60,7 +60,8 @@ Eigenpairs converged_pairs(const KrylovSpace& space, int count) {
   return {out.values.head(found), out.vectors.leftCols(found)};
 }
 
-/// By Arnoldi's iteration without restarts: what is asked for lies apart from the rest, and few steps find it.
+/// Arnoldi's iteration without restarts. The wanted eigenvalues are well separated from the others, so that few steps
+/// find them.
 Eigenpairs arnoldi_pairs(const LinearOperation& operation, int count, Crowded crowded) {
   const Eigen::Index most = std::min<Eigen::Index>(operation.rows() - KrylovSpace::kBlock, 10 * count + 400);
   KrylovSpace space(operation, most);
@@ -74,7 +75,7 @@ Eigenpairs arnoldi_pairs(const LinearOperation& operation, int count, Crowded cr
   }
 }
 
-/// Where the iteration breaks down, all of them, if that takes seconds.
+/// If the iteration fails, computes all pairs, provided that this takes only seconds.
 Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded crowded) {
   try {
     return arnoldi_pairs(operation, count, crowded);

@@ -1,5 +1,6 @@
 #pragma once
-/// The largest eigenvalues of a linear operation, in a file of their own because the solvers take long to compile.
+/// The largest eigenvalues of a linear operation. They are in a file of their own since the solvers take long to
+/// compile.
 
 #include <complex>
 #include <vector>
@@ -13,22 +14,22 @@ struct Eigenpair {
   Eigen::VectorXcd vector;
 };
 
-/// A real square matrix, of which only products with vectors are known.
+/// A real square matrix of which only products with vectors are available.
 class LinearOperation {
  public:
   virtual ~LinearOperation() = default;
   virtual Eigen::Index rows() const = 0;
-  /// Both have rows() numbers.
+  /// `in` and `out` have rows() numbers each.
   virtual void apply(const double* in, double* out) const = 0;
 };
 
-/// What the iteration does where eigenvalues crowd so that it cannot tell them apart.
+/// What the iteration does if eigenvalues are so close to each other that it cannot separate them.
 enum class Crowded {
   Fail,
-  LeaveOut  ///< of the `count` those that have not converged
+  LeaveOut  ///< returns fewer pairs, without those that have not converged
 };
 
-/// The `count` eigenpairs of largest magnitude, largest first. `is_small`: all are computed, by a dense solver.
+/// The `count` eigenpairs of largest magnitude, largest first. `is_small`: compute all of them, by a dense solver.
 /// @throws std::runtime_error if the iteration does not converge.
 std::vector<Eigenpair> largest_eigenpairs(const LinearOperation& operation, int count, bool is_small, Crowded crowded);
 

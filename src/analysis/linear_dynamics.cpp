@@ -11,21 +11,22 @@
 namespace flexarm {
 namespace {
 
-/// Between the poses of differences along a motion [rad]: their truncation, of eighth order, and their round-off are
-/// alike there, some 1e-12 of the derivative.
+/// Distance between the poses from which differences along a motion are taken [rad]. With it, their truncation error
+/// (of eighth order) and round-off are about equal, some 1e-12 of the derivative.
 constexpr double kTurn = 0.05;
-/// Newton's updates on the way to a steady motion, and below which length they are round-off if they do not shrink.
+/// Most updates of Newton's method in the search for a steady motion. Updates below kShort that do not shrink by
+/// kShorter are round-off.
 constexpr int kMostUpdates = 50;
 constexpr double kShort = 1e-8, kShorter = 0.5;
 
-/// In which time stands still, and what drives coordinates is taken away.
+/// The model with its functions of time held constant, and without prescribed motions.
 Model frozen(Model model, double time) {
   for (TimeFunction& history : model.histories) history = TimeFunction(history(time));
   for (Coordinate& coordinate : model.coordinates) coordinate.motion = -1;
   return model;
 }
 
-/// Forces of the scheme's steps at rest, with local interpolation.
+/// The static rule with the forces that the scheme's steps have at rest, and with local interpolation.
 Scheme resting(const Scheme& scheme) {
   Scheme statics = statics_of(scheme);
   statics.tests_vary_strains = scheme.stress == StressRule::Conjugate;
@@ -49,12 +50,12 @@ double second_derivative(const TimeFunction& motion, double time) {
   return (motion.derivative(to) - motion.derivative(from)) / (to - from);
 }
 
-/// Variations of rows' x' and x'' by coordinates y, and of x'' by y'.
+/// Variations of the rows' x' and x'' by the coordinates y, and of x'' by y'.
 struct VariedRates {
   Eigen::MatrixXd first, second, second_by_rates;
 };
 
-/// Of a node's material angular velocity W: spin' + W x spin.
+/// The variation of a node's material angular velocity W is spin' + W x spin.
 VariedRates varied_rates(const DegreesOfFreedom& dof, const MovingMatrix& motion, const CoordinateRates& rows) {
   VariedRates out{motion.first, motion.second, 2 * motion.first};
   for (int i = 0; i < dof.node_count; ++i) {
@@ -189,13 +190,13 @@ void LinearDynamics::set_motion(const Eigen::VectorXd& rates, const Eigen::Vecto
     motion_ = {all.value.bottomRows(rows), all.first.bottomRows(rows), all.second.bottomRows(rows)};
   };
   both();
-  // Loops turn rates into accelerations, on which second derivatives depend.
+  // Rates cause accelerations in loops, and second derivatives depend on these: compute them again.
   if (dependent_.empty() || spacing_ == 0) return;
   columns_.second += allowed_.first * rates;
   both();
 }
 
-/// Stresses of dampers are those of other reference strains: so they stiffen the beam as any stress does.
+/// Replaces stresses of dampers by reference strains, so that they add to the geometric stiffness like any stress.
 void LinearDynamics::put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds) {
   model_.beams = undamped_;
   auto stretch = stretches.begin();
@@ -210,7 +211,7 @@ void LinearDynamics::put_dampers_stress(const std::vector<Stretch>& stretches, c
   });
 }
 
-/// Inertia's forces as loads that do not turn.
+/// Applies the forces of inertia as loads that do not turn with their nodes.
 void LinearDynamics::put_loads(const Eigen::VectorXd& force) {
   state_.wrenches = wrenches_;
   for (int i = 0; i < dof_.node_count; ++i) {
@@ -233,7 +234,7 @@ void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
   system_.begin_equilibrium(state_, 1);
   evaluate();
   if (dependent_.empty()) return;
-  std::vector<int> rows;  // of all that nothing drives
+  std::vector<int> rows;  // all that are not driven
   for (int column = 0; column < maps_.columns(); ++column) {
     const auto place = std::lower_bound(independent_.begin(), independent_.end(), column);
     const bool is_independent = place != independent_.end() && *place == column;
@@ -252,7 +253,7 @@ void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
 ActuatorRates LinearDynamics::actuator_rates(const Eigen::VectorXd& rows) const {
   ActuatorRates out{{}, rotor_rates_};
   for (const Coordinate& coordinate : model_.coordinates) out.coordinates.push_back(rows[dof_.scalar_of(coordinate)]);
-  if (rotor_rates_.empty())  // in steady motion they turn with their coordinates
+  if (rotor_rates_.empty())  // in steady motion rotors turn with their coordinates
     for (const Actuator& actuator : model_.actuators) out.rotors.push_back(out.coordinates[actuator.coordinate]);
   return out;
 }
@@ -273,7 +274,8 @@ void LinearDynamics::assemble() {
   const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   put_loads(force);
   balance(force.tail(coordinates));
-  // In the balance what controllers ask for because of rates is among the commands.
+  // The balance counts the efforts that controllers demand because of rates as commands, so their damping is added
+  // here.
   for (std::size_t i = 0; i < motors.size(); ++i)
     if (!system_.actuators().is_cut(i)) own.damping.coeffRef(scalar_of(i), scalar_of(i)) += motors[i].servo_damping;
 
@@ -325,14 +327,14 @@ void LinearDynamics::move_to_steady(const Eigen::VectorXd& rates) {
     if (way == 0 || (way < kShort && way > kShorter * last)) return;
     last = way;
   }
-  throw std::runtime_error("no steady motion was found: joints that nothing holds, or motions that are too fast");
+  throw std::runtime_error("no steady motion was found: nothing holds some joints, or motions are too fast");
 }
 
 Eigen::VectorXd LinearDynamics::free_accelerations() const {
   const std::vector<int> places = free_places();
   Eigen::VectorXd accelerations = Eigen::VectorXd::Zero(residual_.size());
   add_to_rows(accelerations, places, -square_solution(picked(mass_, places, places), picked_rows(residual_, places)));
-  if (!accelerations.allFinite()) throw std::runtime_error("some coordinate moves nothing that has mass");
+  if (!accelerations.allFinite()) throw std::runtime_error("a coordinate moves nothing that has mass");
   return accelerations;
 }
 
@@ -345,7 +347,7 @@ void LinearDynamics::add_rotors(Reference reference) {
   Eigen::MatrixXd allowed = Eigen::MatrixXd::Zero(count + more, own + more);
   allowed.topLeftCorner(count, own) = allowed_.value;
   allowed.bottomRightCorner(more, more).setIdentity();
-  Eigen::MatrixXd turning = Eigen::MatrixXd::Zero(count + more, own + more);  // of what dampers feel
+  Eigen::MatrixXd turning = Eigen::MatrixXd::Zero(count + more, own + more);  // for the rates that dampers feel
   turning.topLeftCorner(count, own) = allowed_.first;
   const auto summed = [&](const std::vector<Eigen::Triplet<double>>& added) {
     Eigen::SparseMatrix<double> sum(count + more, count + more);

@@ -12,24 +12,24 @@
 
 namespace flexarm {
 
-/// About what a mechanism is linearised.
+/// The motion about which a mechanism is linearised.
 enum class Reference {
   Rest,    ///< the configuration as it is, without velocities, under the loads at time 0
-  Steady,  ///< motions as fast as at time 0, all other coordinates where they stand still under the loads then
+  Steady,  ///< driven joints move as at time 0; the others stand still where loads at time 0 balance
   Instant  ///< the motion as it is
 };
 
-/// How fast it moves.
+/// The rates of a motion.
 struct KnownRates : ActuatorRates {
   std::vector<Vector6> nodes;  ///< {v, w}, world axes
 };
 
-/// The continuous equations of motion of the nodes, linearised. The coordinates y are those of MotionMaps
-/// that loops leave free, driven joints' among them, then the rotors behind elastic gears.
+/// The continuous equations of motion of the nodes, linearised. The coordinates y are those of MotionMaps that loops
+/// leave independent, including driven joints, and then the rotors behind elastic gears.
 class LinearDynamics {
  public:
-  /// `rates`: used where the reference is an instant.
-  /// @throws std::runtime_error if a steady motion is not found, or masses leave an acceleration undecided.
+  /// `rates`: used if the reference is an instant.
+  /// @throws std::runtime_error if a steady motion is not found, or if masses leave an acceleration undetermined.
   LinearDynamics(const Model& model, const State& state, const Scheme& scheme, Reference reference,
                  const KnownRates& rates);
 
@@ -37,7 +37,7 @@ class LinearDynamics {
   /// The state to which y refers: in steady motion it differs from the given state.
   const State& state() const { return state_; }
   int size() const { return static_cast<int>(independent_.size() + rotors_.size()); }
-  /// Scalars of DegreesOfFreedom that the first of y are, and actuators whose rotors the others are.
+  /// What the coordinates y are: first these scalars of DegreesOfFreedom, then the rotors of these actuators.
   const std::vector<int>& scalars() const { return scalars_; }
   const std::vector<int>& rotors() const { return rotors_; }
   bool is_driven(int coordinate) const { return is_driven_[coordinate]; }
@@ -45,17 +45,18 @@ class LinearDynamics {
   const Eigen::MatrixXd& mass() const { return mass_; }
   const Eigen::MatrixXd& damping() const { return damping_; }  ///< gyroscopic terms included
   const Eigen::MatrixXd& stiffness() const { return stiffness_; }
-  /// What the reference lacks of balance: zero but for driven coordinates, where it is the effort that drives them.
+  /// The force by which the reference is out of balance. It is zero except for driven coordinates, where it is the
+  /// driving effort.
   const Eigen::VectorXd& residual() const { return residual_; }
   /// y' and y'' of the reference.
   const Eigen::VectorXd& rates() const { return rates_.first; }
   const Eigen::VectorXd& accelerations() const { return rates_.second; }
 
-  /// The same of all coordinates of MotionMaps, those that loops hold included.
+  /// Rates and accelerations of all coordinates of MotionMaps, including those that loops determine.
   const CoordinateRates& rates_of_columns() const { return columns_; }
 
-  /// A linear map of motions along the reference, by the first of y: `rows` gives it at a pose, from the motion of the
-  /// rows of MotionMaps there.
+  /// A linear map of motions, and its derivatives along the reference, with respect to the coordinates y without
+  /// rotors. `rows` returns the map at a pose, from the motion of the rows of MotionMaps there.
   using Rows = std::function<Eigen::MatrixXd(const MechanismPose& pose, const Eigen::MatrixXd& motion)>;
   MovingMatrix along_reference(const Rows& rows) const;
 
@@ -66,8 +67,8 @@ class LinearDynamics {
   void set_motion(const Eigen::VectorXd& rates, const Eigen::VectorXd& accelerations);
   void put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds);
   void put_loads(const Eigen::VectorXd& force);
-  /// The balance of what is at rest under inertia's forces, with the multipliers that close loops best. `efforts`: of
-  /// inertia and dampers on coordinates [N m or N], which `system_` does not have.
+  /// Finds the balance of the mechanism at rest under the forces of inertia, with the multipliers that close loops
+  /// best. `efforts`: efforts of inertia and dampers on coordinates, which `system_` does not contain [N m or N].
   void balance(const Eigen::VectorXd& efforts);
   void assemble();
   ActuatorRates actuator_rates(const Eigen::VectorXd& rows) const;
@@ -94,8 +95,8 @@ class LinearDynamics {
   MechanismPose pose_;
   CoordinateRates columns_;        // of all columns
   CoordinateRates rates_;          // of y
-  double spacing_ = 0;             // [s] of differences along it
-  MovingMatrix allowed_, motion_;  // columns and rows of MotionMaps, by y
+  double spacing_ = 0;             // time between the poses of differences along it [s]
+  MovingMatrix allowed_, motion_;  // columns and rows of MotionMaps, derivatives by y
   Eigen::MatrixXd tangent_, row_maps_, unknowns_;
   Eigen::MatrixXd mass_, damping_, stiffness_;
   Eigen::VectorXd residual_;

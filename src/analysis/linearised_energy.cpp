@@ -1,4 +1,4 @@
-// What small motions do to the energy, and which digits of it are round-off.
+// The energy of small motions, and how much of it is round-off.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// {displacement, spin} of these nodes.
+/// {displacement, spin} of these nodes, one after the other.
 template <class Nodes>
 Eigen::VectorXcd motion_of(const Nodes& nodes, const std::vector<ComplexVector6>& node_motion) {
   Eigen::VectorXcd motion(6 * static_cast<Eigen::Index>(nodes.size()));
@@ -38,19 +38,20 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
     elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
   });
   const std::vector<std::vector<int>> nodes = nodes_of(model.force_elements, equilibrium);
+  const std::vector<const double*> memories = memories_of(model.force_elements, equilibrium.force_memory);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const auto& [rows, stiffness] = model.force_elements[k]->measures(equilibrium, nodes[k].data());
+    const auto& [rows, stiffness] = model.force_elements[k]->measures(equilibrium, memories[k], nodes[k].data());
     const Eigen::VectorXd way = rows.cwiseAbs() * motion_of(nodes[k], node_motion).cwiseAbs();
     elastic += way.dot(stiffness.cwiseAbs() * way);
   }
-  // A force changes its work by a second order of rotations, times an arm.
+  // Rotations change the work of a force in second order, times an arm.
   for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
   return kStiffnessRoundOff * (elastic + work_of_forces(model, equilibrium) * largest_spin * largest_spin);
 }
 
 bool is_circulatory(const Model& model, const State& equilibrium) {
   const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
-  // The moment on a free rotation has axes that stand still while it turns.
+  // The axes of the moment on a free rotation stand still while the joint turns, so that it has no potential.
   const auto effort_circulates = [&](std::size_t i) {
     const Coordinate& coordinate = model.coordinates[i];
     return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(equilibrium.commands[i]));
@@ -59,7 +60,7 @@ bool is_circulatory(const Model& model, const State& equilibrium) {
     if (std::any_of(loads->begin(), loads->end(), load_circulates)) return true;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
     if (effort_circulates(i)) return true;
-  // A servo that measures beyond its gear pushes at another place than it feels.
+  // A servo that measures behind its gear acts at another place than it measures.
   return std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& actuator) {
     return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
   });
@@ -86,8 +87,9 @@ double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_m
     energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
   });
   const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);
+  const std::vector<const double*> memories = memories_of(model_.force_elements, state_.force_memory);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const auto& [rows, stiffness] = model_.force_elements[k]->measures(state_, nodes[k].data());
+    const auto& [rows, stiffness] = model_.force_elements[k]->measures(state_, memories[k], nodes[k].data());
     const Eigen::VectorXcd way = rows * motion_of(nodes[k], node_motion);
     energy += way.real().dot(stiffness * way.real()) + way.imag().dot(stiffness * way.imag());
   }

@@ -47,7 +47,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
 }
 
 int LinearisedMotion::freedoms() const {
-  // Every multiplier of a loop takes two: its own, which has no mass, and the motion that it holds.
+  // Each multiplier of a loop removes two unknowns: itself, since it has no mass, and the motion that it constrains.
   int freedoms = unknowns();
   for (const LoopClosure& closure : model_.closures) freedoms -= 2 * static_cast<int>(closure.constraints.size());
   return freedoms;
@@ -69,7 +69,8 @@ bool LinearisedMotion::is_damped() const {
   return std::any_of(values.valuePtr(), values.valuePtr() + values.nonZeros(), [](double value) { return value != 0; });
 }
 
-/// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
+/// Sets the multipliers of loops so that they balance the residual best, since their forces stiffen the mechanism as
+/// loads do.
 void LinearisedMotion::find_multipliers() {
   std::vector<int> multipliers;
   for (std::size_t k = 0; k < model_.closures.size(); ++k)
@@ -107,7 +108,7 @@ void LinearisedMotion::set_joint_maps() {
   }
 }
 
-/// Of a released coordinate.
+/// The diagonal entry of a released coordinate.
 double& LinearisedMotion::diagonal(SparseTangent& tangent, int joint, int component) const {
   const int count = released_count(model_.joints[joint].kind);
   return tangent.diagonal_block(dof_.variable_of_joint(joint))[component * count + component];
@@ -151,10 +152,11 @@ void LinearisedMotion::assemble_damping() {
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
   const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);
+  const std::vector<const double*> memories = memories_of(model_.force_elements, state_.force_memory);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const ForceElement& element = *model_.force_elements[k];
-    const Eigen::MatrixXd rows = element.measures(state_, nodes[k].data()).rows;
-    const Eigen::MatrixXd slope = element.dampers(state_, Eigen::VectorXd::Zero(rows.rows())).slope;
+    const Eigen::MatrixXd rows = element.measures(state_, memories[k], nodes[k].data()).rows;
+    const Eigen::MatrixXd slope = element.dampers(state_, memories[k], Eigen::VectorXd::Zero(rows.rows())).slope;
     damping_.add_coupling(static_cast<int>(k), rows.transpose() * slope * rows);
   }
   fold(damping_);

@@ -20,34 +20,34 @@ struct JointMaps {
   std::vector<MimicMap> mimics;
 };
 
-/// What weight, loads at time 0 and applied wrenches do over the model's length scale, or a turn of 1 rad [J].
+/// Work of weight, loads at time 0 and applied wrenches over the model's length scale, or over a rotation by 1 rad [J].
 double work_of_forces(const Model& model, const State& equilibrium);
 
-/// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation, rotations,
+/// Relative round-off of a term of the stiffness. It results from some sixty operations: interpolation, rotations,
 /// section, folding, factorisation.
 constexpr double kStiffnessRoundOff = 64 * std::numeric_limits<double>::epsilon();
-/// What round-off may make of phi* K phi about an equilibrium [J]: that times the sum of its terms, in absolute value.
+/// Round-off of phi* K phi about an equilibrium [J]: kStiffnessRoundOff times the sum of its terms in absolute value.
 double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion);
-/// Some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may gain
-/// energy.
+/// Whether some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may
+/// gain energy.
 bool is_circulatory(const Model& model, const State& equilibrium);
-/// Equilibrium of exact forces, with local interpolation. `contact_time`: of stops (Scheme::contact_time) [s].
+/// The static rule with exact forces and local interpolation. `contact_time`: of stops (Scheme::contact_time) [s].
 Scheme exact_equilibrium(double contact_time);
 
 class LinearisedMotion {
  public:
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-  /// About the configuration of `state`, under the loads at time 0. Both must outlive this. `contact_time`: see
-  /// exact_equilibrium().
+  /// Linearises about the configuration of `state`, under the loads at time 0. `model` and `state` must outlive this
+  /// object. `contact_time`: see exact_equilibrium().
   /// @throws std::runtime_error if the stiffness is not finite.
   LinearisedMotion(const Model& model, const State& state, double contact_time);
 
-  /// Those of a step, then the rotors behind elastic gears.
+  /// Number of unknowns: those of a step, then the rotors behind elastic gears.
   int unknowns() const { return has_rotors() ? static_cast<int>(matrices_.column_starts.size()) - 1 : dof_.unknowns; }
-  /// Motions that no multiplier of a loop holds.
+  /// Number of motions that no multiplier of a loop constrains.
   int freedoms() const;
-  /// All three have the same pattern.
+  /// Stiffness, damping and mass have the same sparsity pattern.
   const std::vector<int>& column_starts() const {
     return has_rotors() ? matrices_.column_starts : stiffness_.column_starts();
   }
@@ -55,19 +55,19 @@ class LinearisedMotion {
     return has_rotors() ? matrices_.row_indices : stiffness_.row_indices();
   }
   Matrix stiffness() const { return matrix(matrices_.stiffness, stiffness_); }
-  /// What multiplies velocities. About a configuration at rest there are no gyroscopic terms in it.
+  /// The matrix of velocities. It has no gyroscopic terms, since the configuration is at rest.
   Matrix damping() const { return matrix(matrices_.damping, damping_); }
   Matrix mass() const { return matrix(matrices_.mass, mass_); }
   bool is_damped() const;
   bool is_circulatory() const { return flexarm::is_circulatory(model_, state_); }
 
-  /// The second derivative of the potential, with multipliers, rotors at rest. Unlike the stiffness, whose tests are
-  /// not the variations of the strains, it is symmetric; the two differ by the elements' own error.
+  /// The second derivative of the potential, with multipliers and with rotors at rest. It is symmetric, unlike the
+  /// stiffness, whose tests are not the variations of the strains. The two differ by the elements' own error.
   Eigen::SparseMatrix<double> curvature() const;
 
-  /// The motion of all nodes and coordinates that an eigenvector means; frequency and rate are left alone.
+  /// The motion of all nodes and coordinates that belongs to an eigenvector. Does not set frequency and rate.
   Mode expand(const Eigen::VectorXcd& vector) const;
-  /// Twice the energy of the strains that a motion of the nodes makes [J].
+  /// Twice the strain energy of a motion of the nodes [J].
   double strain_energy(const std::vector<ComplexVector6>& node_motion) const;
   double round_off(const std::vector<ComplexVector6>& node_motion) const {
     return flexarm::round_off(model_, state_, node_motion);
@@ -76,7 +76,7 @@ class LinearisedMotion {
  private:
   static Matrix matrix(const SparseTangent& tangent);
   bool has_rotors() const { return !matrices_.column_starts.empty(); }
-  /// Those with rotors, if there are any.
+  /// `extended` if there are rotors, else `own`.
   Matrix matrix(const std::vector<double>& extended, const SparseTangent& own) const;
   void find_multipliers();
   void set_joint_maps();
@@ -95,7 +95,7 @@ class LinearisedMotion {
   const SparseTangent& stiffness_;
   SparseTangent damping_, mass_;
   JointMaps maps_;
-  MotionMatrices matrices_;  // with rotors behind elastic gears; empty where there are none
+  MotionMatrices matrices_;  // with rotors behind elastic gears; empty if there are none
 };
 
 }  // namespace flexarm

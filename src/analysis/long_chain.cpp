@@ -12,12 +12,12 @@
 namespace flexarm {
 namespace {
 
-/// Dimensions of the Krylov space.
+/// Largest dimension of the Krylov space.
 constexpr Eigen::Index kDimensions = 60;
-/// A new direction that is this part of what it was before it was made normal to the others is round-off.
+/// A new direction is round-off if at most this part of it is left after it was made orthogonal to the others.
 constexpr double kExhausted = 1e-10;
 
-/// A^-1 of the tangent A evaluated last.
+/// Product with A^-1, where A is the last evaluated tangent.
 class Inverse {
  public:
   explicit Inverse(StepSystem& system) : system_(system) {}
@@ -31,7 +31,7 @@ class Inverse {
   StepSystem& system_;
 };
 
-/// A unit vector v of a Krylov space of a symmetric A^-1 with the least v^T A^-1 v, by Lanczos's method.
+/// The unit vector v of a Krylov space of a symmetric A^-1 with the least v^T A^-1 v, by Lanczos's method.
 Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
   const Eigen::Index most = std::min(size, kDimensions);
   Eigen::MatrixXd basis(size, most), images(size, most);
@@ -60,7 +60,7 @@ UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const St
   if (!system.tangent().factorise() || !system.tangent().expanded_solution()) return {};
   Inverse inverse(system);
   const Eigen::VectorXd vector = least_ritz_vector(inverse, system.degrees_of_freedom().unknowns);
-  // Of A = K + neutral D: w = A^-1 v has w^T A w = v^T A^-1 v.
+  // With A = K + neutral D and w = A^-1 v: w^T A w = v^T A^-1 v.
   const Eigen::VectorXd motion = inverse(vector);
   const std::vector<ComplexVector6> nodes = node_motion_of_solution(system);
   const NodeWays ways(model, nodes);

@@ -1,13 +1,13 @@
 #pragma once
-/// Stability of mechanisms whose tangent matrix would be too large.
+/// Stability of mechanisms with so many joints that their tangent matrix would be too large.
 
 #include "analysis/stability.h"
 
 namespace flexarm {
 
-/// A motion of an equilibrium in which the potential falls, by the signs of what a Krylov space of K^-1 sees (Ritz
-/// values), with the elimination along the tree for K. Whatever it finds is one; a motion that falls steeply, beside
-/// many others, may be missed. Of models without loops' constraints.
+/// Finds a motion out of an equilibrium in which the potential falls: by the signs of Ritz values in a Krylov space of
+/// K^-1, with the elimination along the tree for K. Whatever it finds is such a motion. But among many other motions,
+/// it may miss one that falls steeply. Only for models without loop constraints.
 /// @throws std::runtime_error if the stiffness is not finite.
 UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium);
 

@@ -17,7 +17,7 @@ Model undriven(Model model) {
   return model;
 }
 
-/// From `from` to `to`, along axes of what both turn against.
+/// Rotation vector from `from` to `to`, in the axes to which both orientations are relative.
 Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
   return so3::log(Quaternion(to * from.conjugate()));
 }
@@ -95,7 +95,7 @@ Eigen::VectorXd MechanismStates::rates(const MechanismMotion& motion) const {
   return out;
 }
 
-// Of a rotation exp(t) R with the spin w, dt/dtime = dw + w x t.
+// For a rotation exp(t) R with the spin w: dt/dtime = dw + w x t.
 Eigen::VectorXd MechanismStates::turning(const Eigen::VectorXd& turned) const {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(turned.size());
   for (const int column : spins_)

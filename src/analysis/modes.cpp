@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Modes computed beyond those asked for.
+/// Number of modes that are computed beyond the requested ones.
 constexpr int kExtraModes = 12;
 
 /// x* A x; its real part is an energy.
@@ -29,11 +29,11 @@ double trace(const LinearisedMotion::Matrix& matrix) {
   return Eigen::SparseMatrix<double>(matrix).diagonal().cwiseAbs().sum();
 }
 
-/// An eigenvector with what its energies say of its eigenvalue's accuracy.
+/// An eigenvector, with energies that show how accurate its eigenvalue is.
 struct Motion {
   Mode mode;
   double mass, damping;  ///< x* M x and x* D x
-  double round_off;      ///< of x* K x, and of the solver, to which eigenvalues mu = 0 are 1/shift
+  double round_off;      ///< of x* K x, and of the solver, in which mu = 0 has the eigenvalue 1/shift
 
   Motion(const LinearisedMotion& system, double shift, Eigen::VectorXcd vector) : mode(system.expand(vector)) {
     Complex largest = 0;
@@ -55,8 +55,8 @@ struct Motion {
   }
 };
 
-/// lambda of mu = -lambda^2: of the two the growing one if mu < 0, and of a complex mu the one that belongs to it
-/// alone.
+/// lambda for mu = -lambda^2. If mu < 0, it is the growing one of two. Of two conjugate mu, one gives a growing and the
+/// other a decaying oscillation.
 Complex undamped_eigenvalue(Complex mu) {
   return mu.imag() == 0 && mu.real() < 0 ? std::sqrt(-mu.real()) : Complex(0, 1) * std::sqrt(mu);
 }
@@ -66,8 +66,8 @@ Mode undamped_mode(const LinearisedMotion& system, double shift, const Eigenpair
   const double tolerance = motion.round_off / motion.mass;
   if (std::abs(pair.value) <= tolerance) return std::move(motion).with(0);
   if (pair.value.imag() != 0 && (!system.is_circulatory() || std::abs(pair.value.imag()) <= tolerance)) {
-    // Two real ones next to each other: K is symmetric but for round-off and what elements make of curved beams. Any
-    // combination of their vectors is one.
+    // Two real eigenvalues that are nearly equal: K is symmetric except for round-off and for the error of elements of
+    // curved beams. Any combination of their vectors is an eigenvector.
     const Complex phase = pair.value.imag() > 0 ? Complex(1, 0) : Complex(0, 1);
     const Eigen::VectorXd part = (phase * pair.vector).real();
     return Motion(system, shift, part.cast<Complex>()).with(undamped_eigenvalue(pair.value.real()));
@@ -75,19 +75,18 @@ Mode undamped_mode(const LinearisedMotion& system, double shift, const Eigenpair
   return std::move(motion).with(undamped_eigenvalue(pair.value));
 }
 
-/// Nothing where the pair is one of those that a free motion has, or the conjugate of another one.
-/// `shift`: of mu.
+/// None if the pair belongs to a free motion, or is the conjugate of another pair. `shift`: of mu.
 std::optional<Mode> damped_mode(const LinearisedMotion& system, double shift, const Eigenpair& pair) {
   Complex lambda = pair.value;
   if (lambda.imag() < 0) return std::nullopt;
   Motion motion(system, shift, pair.vector);
   const double size = std::abs(lambda);
   if (std::max(size * size * motion.mass, size * motion.damping) <= motion.round_off) return std::nullopt;
-  // Of the energies, and of 1/(lambda/s - 1), which the solver knows to the round-off of its largest value.
+  // Errors of the energies, and of 1/(lambda/s - 1), which the solver knows to the round-off of its largest value.
   const double s = std::sqrt(shift);
   const double tolerance = motion.round_off / std::abs(2.0 * lambda * motion.mass + motion.damping) +
                            kStiffnessRoundOff * std::norm(lambda - s) / s;
-  const bool may_grow = system.is_circulatory() || lambda.imag() == 0;  // Kelvin, Tait and Chetaev
+  const bool may_grow = system.is_circulatory() || lambda.imag() == 0;  // theorem of Kelvin, Tait and Chetaev
   if (std::abs(lambda.real()) <= tolerance || (lambda.real() > 0 && !may_grow)) lambda.real(0);
   return std::move(motion).with(lambda);
 }
@@ -104,7 +103,7 @@ bool comes_before(const Mode& a, const Mode& b) {
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
   assert(contact_time > 0);
   const LinearisedMotion system(model, state, contact_time);
-  // More modes than asked for, so that the scale is that of elastic ones where there are free motions.
+  // Compute more modes than requested, so that the scale is that of elastic modes even if there are free motions.
   const int computed = std::min(count + kExtraModes, system.freedoms());
   if (count <= 0 || computed <= 0) return {};
   // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
@@ -121,7 +120,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   modes.reserve(pairs.size());
   for (const Eigenpair& pair : pairs) modes.push_back(undamped_mode(system, shift, pair));
   if (system.is_damped()) {
-    // Free motions are those of K alone, damped or not; they stay.
+    // Free motions follow from K alone, with damping or without, so they stay.
     modes.erase(std::remove_if(modes.begin(), modes.end(), [](const Mode& mode) { return !mode.is_free(); }),
                 modes.end());
     const int wanted = std::min(2 * (count + static_cast<int>(modes.size())) + kExtraModes, 2 * system.freedoms());

@@ -14,7 +14,7 @@
 namespace flexarm {
 namespace {
 
-/// Columns of constraints that are smaller than this part of the largest do not move what a loop holds.
+/// Columns of the constraints are dependent if their pivots are smaller than this.
 constexpr double kIndependent = 1e-9;
 
 }  // namespace
@@ -23,6 +23,7 @@ MechanismPose pose_of(const State& state) {
   MechanismPose pose;
   for (const NodeState& node : state.nodes) pose.nodes.push_back(node_pose(node));
   pose.released = state.released;
+  pose.force_memory = state.force_memory;
   return pose;
 }
 
@@ -34,13 +35,14 @@ State state_at(const MechanismPose& pose) {
     state.nodes.back().orientation = node.orientation;
   }
   state.released = pose.released;
+  state.force_memory = pose.force_memory;
   return state;
 }
 
 MotionMaps::MotionMaps(const Model& model, const DegreesOfFreedom& dof)
     : model_(model), dof_(dof), rows_(dof.scalar_count), columns_(dof.unknowns) {
   for (const LoopClosure& closure : model.closures) constraint_count_ += static_cast<int>(closure.constraints.size());
-  rows_ -= constraint_count_;  // multipliers stand behind all else
+  rows_ -= constraint_count_;  // multipliers come last
   columns_ -= constraint_count_;
   sort_nodes();
 }
@@ -62,7 +64,8 @@ void MotionMaps::sort_nodes() {
       int carrier = model_.node_parents[node];
       while (carrier >= 0 && dof_.slave_joint[carrier] < 0) carrier = model_.node_parents[carrier];
       visit(carrier);
-      if (carrier >= 0 && marks[carrier] == Mark::Done) carriers_[node] = carrier;  // else it follows this one itself
+      // If the carrier itself follows this node, it is not marked as done.
+      if (carrier >= 0 && marks[carrier] == Mark::Done) carriers_[node] = carrier;
     }
     marks[node] = Mark::Done;
     order_.push_back(node);
@@ -83,7 +86,7 @@ Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
   }
   FoldMaps fold;
   SlideMaps slide;
-  const auto carry = [&](int node, int carrier, const Vector3& arm) {  // as a rigid body
+  const auto carry = [&](int node, int carrier, const Vector3& arm) {  // like a rigid body
     auto own = maps.middleRows<6>(dof_.first[node]);
     const auto carried = maps.middleRows<6>(dof_.first[carrier]);
     own += carried;
@@ -177,7 +180,7 @@ Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::Matr
     if (!std::binary_search(independent.begin(), independent.end(), column)) dependent.push_back(column);
   const Eigen::MatrixXd rows = constraints(pose, maps);
   add_to_rows(allowed, dependent, -square_solution(picked_columns(rows, dependent), picked_columns(rows, independent)));
-  if (!allowed.allFinite()) throw std::runtime_error("loops leave undecided how their joints move");
+  if (!allowed.allFinite()) throw std::runtime_error("the loops do not determine how their joints move");
   return allowed;
 }
 

@@ -28,7 +28,7 @@ Eigen::SparseMatrix<double> summed(const Triplets& entries, Eigen::Index size) {
   return sum;
 }
 
-/// Mass of beams and what is proportional to it.
+/// Adds the mass of beams, and the damping that is proportional to it.
 void add_beams(const Model& model, const DegreesOfFreedom& dof, Triplets& mass, Triplets& damping) {
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
@@ -80,7 +80,7 @@ NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, co
     add(mass, spin, rotary);
     add(damping, spin, carried - momentum + inertia.rotary_damping);
     add(turning, spin, -so3::hat(moment));
-    out.force.segment<3>(spin) = momentum * velocity;  // the sum below has (carried - momentum) velocity
+    out.force.segment<3>(spin) = momentum * velocity;  // the sum below adds (carried - momentum) velocity
   }
   out.mass = summed(mass, size);
   out.damping = summed(damping, size);
@@ -93,8 +93,8 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
   std::vector<Stretch> stretches;
   const State state = state_at(pose);
   const auto add_stretch = [&](const std::vector<int>& nodes, Eigen::MatrixXd rows, const Eigen::MatrixXd& damping,
-                               const ForceElement* element) {
-    Stretch stretch{{}, std::move(rows), damping, element};
+                               const ForceElement* element, const double* memory) {
+    Stretch stretch{{}, std::move(rows), damping, element, memory};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       for (int k = 0; k < 6; ++k) stretch.scalars.push_back(dof.first[nodes[i]] + k);
       auto spins = stretch.rows.middleCols<3>(6 * static_cast<Eigen::Index>(i) + 3);
@@ -109,12 +109,13 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
       add_stretch({element.nodes.begin(), element.nodes.end()}, strains[k],
                   element.stiffness_damping * element.stiffness_points[k].weight *
                       damped_stiffness(element, static_cast<int>(k)),
-                  nullptr);
+                  nullptr, nullptr);
   });
   const std::vector<std::vector<int>> nodes = nodes_of(model.force_elements, state);
+  const std::vector<const double*> memories = memories_of(model.force_elements, pose.force_memory);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const ForceElement& element = *model.force_elements[k];
-    add_stretch(nodes[k], element.measures(state, nodes[k].data()).rows, {}, &element);
+    add_stretch(nodes[k], element.measures(state, memories[k], nodes[k].data()).rows, {}, &element, memories[k]);
   }
   return stretches;
 }
@@ -122,7 +123,7 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
 StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps,
                                const MechanismPose& pose, const CoordinateRates& rates, double spacing) {
   const std::vector<Stretch> stretches = damped_stretches(model, dof, pose);
-  // All rows below each other, so that one function of time has them; narrower ones end with zeros.
+  // Stack all rows, so that one function of time gives them all. Shorter rows end with zeros.
   const auto stacked = [&](const std::vector<Stretch>& parts) {
     Eigen::Index rows = 0, columns = 0;
     for (const Stretch& part : parts) rows += part.rows.rows(), columns = std::max(columns, part.rows.cols());
@@ -146,7 +147,8 @@ StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, 
   for (const Stretch& part : stretches) {
     Eigen::MatrixXd slope = part.damping;
     if (part.element) {
-      const DamperTensions dampers = part.element->dampers(state, part.rows * picked_rows(speeds, part.scalars));
+      const DamperTensions dampers =
+          part.element->dampers(state, part.memory, part.rows * picked_rows(speeds, part.scalars));
       add_to_rows(out.of_elements, part.scalars, part.rows.transpose() * dampers.tension);
       slope = dampers.slope;
     }

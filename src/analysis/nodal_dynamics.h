@@ -1,6 +1,5 @@
 #pragma once
-/// Inertia and damping of all nodes and coordinates by themselves, and their derivatives. (docs/notes/linearisation.md
-/// 2)
+/// Inertia and damping of single nodes and coordinates, and their derivatives. (docs/notes/linearisation.md 2)
 
 #include <Eigen/SparseCore>
 
@@ -8,34 +7,36 @@
 
 namespace flexarm {
 
-/// Of the rows of MotionMaps, whose rates x' and x'' are {v, W} of nodes with the material angular velocity W. The
-/// rotary inertia of beams is lumped at nodes, as in the steps of the energy-momentum family.
+/// The entries belong to the rows of MotionMaps, whose rates x' and x'' are {v, W} of nodes with the material angular
+/// velocity W. The rotary inertia of beams is lumped at nodes, as in the steps of the energy-momentum family.
 struct NodalDynamics {
   Eigen::SparseMatrix<double> mass;     ///< derivative of the force by x''
   Eigen::SparseMatrix<double> damping;  ///< by x', gyroscopic terms included
-  Eigen::SparseMatrix<double> turning;  ///< by x, of moments that turn with their node
-  Eigen::VectorXd force;                ///< world forces, moments in the node's own axes, efforts
+  Eigen::SparseMatrix<double> turning;  ///< by x, for moments that turn with their node
+  Eigen::VectorXd force;                ///< forces along world axes, moments in the node's own axes, efforts
 };
 
 /// `contact_time`: of stops (Scheme::contact_time) [s].
 NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
                              const CoordinateRates& rates);
 
-/// What stretches as a few rows of MotionMaps move, and has a damper: strains of a beam's point, measures of a force
-/// element.
+/// A quantity that has a damper, and that is a linear function of a few rows of MotionMaps: the strains at a point of a
+/// beam, or the measures of a force element.
 struct Stretch {
   std::vector<int> scalars;     ///< rows of MotionMaps
-  Eigen::MatrixXd rows;         ///< stretch by those
-  Eigen::MatrixXd damping;      ///< of strains
-  const ForceElement* element;  ///< whose measures these are; null: they are strains
+  Eigen::MatrixXd rows;         ///< derivative of the quantity by those rows
+  Eigen::MatrixXd damping;      ///< damping matrix, of strains only
+  const ForceElement* element;  ///< the element with these measures; null: they are strains
+  const double* memory;         ///< of the element, part of the pose's
 };
-/// Of all dampers between nodes, at a pose; in the same order at any pose.
+/// All dampers between nodes, at a pose. Their order is the same at any pose.
 std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom& dof, const MechanismPose& pose);
 
-/// Forces of dampers on the rows of MotionMaps by x' and, since directions change along the motion, by x.
+/// Derivatives of the dampers' forces on the rows of MotionMaps: by x', and by x, since directions change along the
+/// motion.
 struct StretchDamping {
   Eigen::SparseMatrix<double> by_rates, by_places;
-  Eigen::VectorXd of_elements;  ///< what those of force elements are; those of strains are stresses of the beams
+  Eigen::VectorXd of_elements;  ///< forces of force elements; those of strains are stresses of the beams
 };
 StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps,
                                const MechanismPose& pose, const CoordinateRates& rates, double spacing);

@@ -12,7 +12,7 @@
 
 namespace flexarm {
 
-/// How far nodes go in a motion: displacements over the model's length scale, turns in rad.
+/// How far each node moves: the displacement over the model's length scale, or the rotation in rad if that is larger.
 class NodeWays {
  public:
   NodeWays(const Model& model, const std::vector<ComplexVector6>& motion) : model_(model) {
@@ -38,7 +38,7 @@ class NodeWays {
   std::vector<double> ways_;  // per node
 };
 
-/// Of all nodes in the solution that the tangent of a system has given last.
+/// Motion of all nodes in the last solution of the system's tangent.
 inline std::vector<ComplexVector6> node_motion_of_solution(StepSystem& system) {
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   const double* scalars = system.tangent().expanded_solution();

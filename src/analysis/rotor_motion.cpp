@@ -16,12 +16,13 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Of a spring of the tangent stiffness k between the coordinate and its rotor, and a servo on one of both.
+/// Coefficients for a coordinate and its rotor: of the elastic gear between them, and of a servo on the rotor or on the
+/// link.
 struct Coupling {
   double gear, on_rotor, on_link;
 };
 
-/// Between equations `q` and `rotor`.
+/// Adds a coupling between the equations `q` and `rotor`.
 void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
   entries.emplace_back(q, q, coupling.gear);
   entries.emplace_back(q, rotor, -coupling.gear);
@@ -29,23 +30,23 @@ void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
   entries.emplace_back(rotor, rotor, coupling.gear + coupling.on_rotor);
 }
 
-/// Of the controller in force; null where none is, or it is off.
+/// The law of the active controller; null if there is none, or if it is off.
 const ServoLaw* law_in_force(const Actuator& actuator, const ActuatorState& state) {
   return actuator.servo && state.servo.off == 0 ? &law_of(*actuator.servo, state.servo) : nullptr;
 }
 
-/// Of the coordinate that an actuator drives.
+/// Equation of the coordinate that an actuator drives.
 int equation_of(const Model& model, const DegreesOfFreedom& dof, std::size_t actuator) {
   return dof.equation[dof.scalar_of(model.coordinates[model.actuators[actuator].coordinate])];
 }
 
-/// Of an elastic gear [rad or m].
+/// Twist of an elastic gear [rad or m].
 double gear_twist(const Model& model, const State& state, std::size_t actuator) {
   const Coordinate& coordinate = model.coordinates[model.actuators[actuator].coordinate];
   return state.actuators[actuator].angle - state.released[coordinate.joint].displacement[coordinate.component % 3];
 }
 
-/// Of a controller, at a time of a motion.
+/// The set point of a controller at an instant of a motion.
 struct SetPointNow {
   double value, rate;
 };
@@ -57,7 +58,7 @@ SetPointNow set_point_now(const Model& model, const Servo& servo, const ServoSta
   return {history(time), history.derivative(time)};
 }
 
-/// Side of a servo on which a gain acts.
+/// The coupling by a gear, and by a gain of the servo on the side that it measures.
 Coupling coupling(double gear, const std::optional<Servo>& servo, double gain) {
   if (!servo) return {gear, 0, 0};
   return servo->on_link ? Coupling{gear, 0, gain} : Coupling{gear, gain, 0};
@@ -70,7 +71,7 @@ std::vector<double> values(const Sparse& pattern, const SparseTangent& own, cons
     for (int p = own.column_starts()[column]; p < own.column_starts()[column + 1]; ++p)
       entries.emplace_back(own.row_indices()[p], column, own.values()[p]);
   sum.setFromTriplets(entries.begin(), entries.end());
-  const Sparse whole = sum + pattern;  // pattern holds zeros: all entries are there
+  const Sparse whole = sum + pattern;  // `pattern` holds zeros, so that all of its entries exist
   return {whole.valuePtr(), whole.valuePtr() + whole.nonZeros()};
 }
 
@@ -160,7 +161,7 @@ MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, cons
   if (rotors.actuators.empty()) return {};
   const int size = stiffness.unknowns() + static_cast<int>(rotors.actuators.size());
   Triplets places;
-  // Springs couple all four places of a coordinate and its rotor.
+  // The stiffness has entries at all four places of a coordinate and its rotor.
   for (const Eigen::Triplet<double>& entry : rotors.stiffness) places.emplace_back(entry.row(), entry.col(), 0.0);
   for (int column = 0; column < stiffness.unknowns(); ++column)
     for (int p = stiffness.column_starts()[column]; p < stiffness.column_starts()[column + 1]; ++p)

@@ -7,15 +7,15 @@
 namespace flexarm {
 namespace {
 
-/// Way of a step that is aimed at, and the longest one that is taken [rad, or in units of the length scale]: directions
-/// of forces hold so far.
+/// Length of a step at which the search aims, and the longest one that is accepted [rad, or in units of the length
+/// scale]. Over such lengths the directions of forces are about constant.
 constexpr double kAimedWay = 0.3, kLongestWay = 1;
-/// Steps on the way, and attempts at one, until it is given up.
+/// Most steps, and most attempts at one step, before the search is given up.
 constexpr int kMostSteps = 300, kMostAttempts = 30;
-/// By which the drag grows where a step fails, and shrinks at most from one to the next.
+/// Factor by which the drag grows if a step fails, and the smallest one by which it shrinks from a step to the next.
 constexpr double kMoreDrag = 4, kLessDrag = 1. / 16;
-/// Steps that become longer leave an unstable equilibrium, to which Newton's would lead back: drag shrinks once so many
-/// in a row have become shorter.
+/// If steps become longer, the mechanism is leaving an unstable equilibrium, to which Newton's steps would lead back.
+/// So the drag shrinks only after this many steps in a row have become shorter.
 constexpr int kShorterInARow = 3;
 
 }  // namespace

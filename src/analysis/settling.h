@@ -1,26 +1,26 @@
 #pragma once
-/// Lets a mechanism settle in an equilibrium.
+/// Finds an equilibrium by letting a mechanism settle.
 
 #include "integrators/newton.h"
 
 namespace flexarm {
 
-/// Lets a mechanism sink to an equilibrium, as if through a fluid that is so thick that nothing has inertia: in
-/// implicit Euler steps, longer and longer ones as it comes to rest, until they are Newton's. Such a motion ends in
-/// stable equilibria alone where loads have a potential, and needs no stiffness to start with.
+/// Lets a mechanism sink to an equilibrium, as if through a thick fluid, without inertia. It makes implicit Euler
+/// steps, which become longer as the mechanism comes to rest, until they are Newton's steps. If loads have a potential,
+/// such a motion ends in a stable equilibrium only. It needs no stiffness at the start.
 class Settling {
  public:
-  /// `neutral`: curvature of the potential that counts as none, see Stability; drag is never less, so that round-off of
-  /// the balance does not move what nothing holds [J]. `tolerance`: on ways. The system and the iteration must outlive
-  /// it.
+  /// `neutral`: curvature of the potential that counts as zero, see neutral_curvature() [J]. The drag is never less, so
+  /// that round-off of the balance does not move what nothing holds. `tolerance`: for the length of steps. `system` and
+  /// `newton` must outlive this object.
   Settling(StepSystem& system, NewtonIteration& newton, double neutral, double tolerance)
       : system_(system), newton_(newton), neutral_(neutral), tolerance_(tolerance) {}
 
-  /// Settles from `state`, under loads times `load_factor`; forces decide the steps. Returns false if it does not come
-  /// to rest, or if stiffness cannot balance what moves it; then `result` says why, and `state` is where it was given
-  /// up.
+  /// Settles from `state`, under loads times `load_factor`. The drag of the first step follows from the forces. Returns
+  /// false if the mechanism does not come to rest, or if stiffness cannot balance what moves it. Then `result` says
+  /// why, and `state` is where the search was given up.
   bool settle(State& state, double load_factor, StepResult& result);
-  /// The same with the first step's Drag::strength.
+  /// The same, with a given Drag::strength in the first step.
   bool settle(State& state, double load_factor, double drag, StepResult& result);
 
  private:

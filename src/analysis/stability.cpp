@@ -16,20 +16,20 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Stiffness of what holds loops together, beside that of what they join.
+/// Stiffness of the springs that replace loop constraints, relative to the stiffness of the parts that they join.
 constexpr double kLoopStiffness = 1e3;
-/// Added to the diagonal, which is scaled to 1: zeros there are no reason to stop.
+/// Added to the diagonal, which is scaled to 1, so that zeros there do not stop the factorisation.
 constexpr double kShift = 1e-12;
-/// Pivots below this may mean a motion that nothing holds: eight digits have gone.
+/// A pivot below this may belong to a motion that nothing holds: eight digits are lost.
 constexpr double kSmallPivot = 1e-8;
 /// See neutral_curvature().
 constexpr double kNeutral = 1e-6;
 /// Chains of more joints have matrices that are dense and large.
 constexpr std::size_t kMostCoordinates = 1000;
-/// Motions that are looked at, the softest ones first.
+/// Most motions that are examined; the softest come first.
 constexpr std::size_t kMostMotions = 64;
 
-/// Springs in place of loops' constraints, in the unknowns that are no multipliers.
+/// The matrix with springs in place of loop constraints, for the unknowns that are no multipliers.
 Matrix with_springs(const Matrix& whole, Eigen::Index multipliers) {
   if (multipliers == 0) return whole;
   const Eigen::Index motions = whole.cols() - multipliers;
@@ -47,7 +47,7 @@ Matrix with_springs(const Matrix& whole, Eigen::Index multipliers) {
   return curvature + Matrix(constraints.transpose() * constraints);
 }
 
-/// Motions of the pivots that are negative or small, one entry per unknown.
+/// The motions that belong to negative or small pivots, one entry per unknown.
 std::vector<Eigen::VectorXd> soft_motions(const Matrix& whole, Eigen::Index multipliers) {
   Matrix curvature = with_springs(whole, multipliers);
   const Eigen::Index size = curvature.cols();

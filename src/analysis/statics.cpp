@@ -11,16 +11,17 @@
 namespace flexarm {
 namespace {
 
-/// First way along an unstable motion [rad, or in units of the length scale].
+/// First displacement along an unstable motion [rad, or in units of the length scale].
 constexpr double kPush = 1e-3;
-/// Drag on the way out of an unstable equilibrium beside its curvature: what leaves it doubles its way in each step.
+/// Drag with which an unstable equilibrium is left, relative to its curvature: with it, displacements double in each
+/// step.
 constexpr double kDragOfFall = 2;
-/// Times that a mechanism may fall from one unstable equilibrium to another one.
+/// Most unstable equilibria that a mechanism may leave one after the other.
 constexpr int kMostFalls = 10;
-/// Errors of servos that integrate shrink at each turn by the stiffness of the loads over that and kp; by less than
-/// this they do so by round-off alone.
+/// In each turn the errors of servos with an integral shrink, by the stiffness of the loads over the sum of this
+/// stiffness and kp. If they shrink by less than this ratio, that is round-off.
 constexpr double kServosComeNearer = 0.9;
-/// The same of updates whose tangent leaves out terms of the elements' own error.
+/// The same for updates of Newton's method, whose tangent leaves out terms of the elements' own error.
 constexpr double kShorter = 0.5;
 
 bool depends_on_path(const Scheme& scheme) {
@@ -37,7 +38,7 @@ class EquilibriumSearch {
  public:
   EquilibriumSearch(const Model& model, const Scheme& scheme, const StepSettings& settings, const State& state)
       : EquilibriumSearch(model, scheme, statics_of(scheme), settings, state) {}
-  /// `statics`: the balance that is sought.
+  /// `statics`: the rule of the equilibrium that is sought.
   EquilibriumSearch(const Model& model, const Scheme& scheme, const Scheme& statics, const StepSettings& settings,
                     const State& state)
       : model_(model),
@@ -53,7 +54,7 @@ class EquilibriumSearch {
   const StaticResult& result() const { return result_; }
   const std::vector<double>& update_norms() const { return newton_.update_norms(); }
 
-  /// Down the potential where there is one and joints are not held firmly; else after the loads.
+  /// Descends the potential, if there is one and joints are not held firmly. Otherwise follows the growing loads.
   bool find(int load_steps, Equilibrium wanted) {
     if (wanted == Equilibrium::UnderTheLoads || !JointPotentials::exist(model_, state_))
       return follow_loads(load_steps, wanted);
@@ -77,7 +78,7 @@ class EquilibriumSearch {
     return follow_loads(load_steps, wanted);
   }
 
-  /// From an equilibrium, to round-off: as long as updates become shorter.
+  /// Improves an equilibrium to round-off: goes on as long as updates become shorter.
   bool sharpen() {
     JointHold hold;
     if (JointPotentials::exist(model_, state_)) {
@@ -90,7 +91,7 @@ class EquilibriumSearch {
     return sharpen_by_newton();
   }
 
-  /// What the scheme remembers of forces is that of the equilibrium.
+  /// Replaces the forces that the scheme stores by those of the equilibrium.
   void renew_forces() {
     if (!state_.forces.empty()) state_.forces = system_.nodal_forces(state_);
   }
@@ -101,7 +102,7 @@ class EquilibriumSearch {
     return increase_loads(load_steps) && (depends_on_path(scheme_) ? settle_without_path(wanted) : settle_for(wanted));
   }
 
-  /// The state is one of the search's own system.
+  /// Makes the state a state of the search's own system.
   bool stand() {
     Eigen::VectorXd multipliers;
     if (!model_.closures.empty() && !descent_->find_multipliers(state_, multipliers)) return false;
@@ -117,7 +118,7 @@ class EquilibriumSearch {
     if (!descent_->find(state_, load_steps, result_)) return false;
     name_fall();
     if (!let_servos_integrate()) return false;
-    // Beams may buckle about joints that stand.
+    // Beams may buckle while joints stand still.
     for (int fall = 0;; ++fall) {
       const Stability stability = judge_stability(model_, scheme_, state_);
       result_.loose_link = stability.loose_link;
@@ -144,8 +145,8 @@ class EquilibriumSearch {
     return let_servos_integrate();
   }
 
-  /// If strains depend on the path, a mechanism may go round and round for ever. The equilibrium to which it falls does
-  /// not depend on the path; so it falls with local interpolation, and its strains start anew there.
+  /// If strains depend on the path, a mechanism may go round for ever. The equilibrium to which it falls does not
+  /// depend on the path. So let it fall with local interpolation, and let its strains start anew there.
   bool settle_without_path(Equilibrium wanted) {
     const Scheme local = with_local_strains(scheme_);
     EquilibriumSearch search(model_, local, settings_, state_);
@@ -182,7 +183,7 @@ class EquilibriumSearch {
     }
   }
 
-  /// A servo that integrates is at rest where it has no error.
+  /// A servo with an integral is at rest only if it has no error.
   bool let_servos_integrate() {
     for (double error = std::numeric_limits<double>::infinity();;) {
       const double last = error;
@@ -197,7 +198,8 @@ class EquilibriumSearch {
     }
   }
 
-  /// Full updates first: a beam that rolls up by several turns needs large rotations at once, and takes them well.
+  /// Try full updates first: a beam that rolls up by several turns needs large rotations at once, and converges well
+  /// with them.
   bool solve(double factor) {
     if (is_descending_) return descent_->find(state_, 1, result_);
     using Updates = NewtonIteration::Updates;
@@ -210,7 +212,7 @@ class EquilibriumSearch {
     return false;
   }
 
-  /// To one side of the motion or, where a line ends there, to the other one.
+  /// Pushes the mechanism along the motion; in the opposite direction if a slider would leave its line.
   bool leave(const UnstableMotion& motion) {
     for (const double push : {kPush, -kPush}) {
       system_.begin_equilibrium(state_, 1);

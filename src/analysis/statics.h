@@ -11,10 +11,12 @@
 
 namespace flexarm {
 
-/// Equilibrium by `load_steps` equal increments of gravity and loads, with the scheme's interpolation. Prescribed
-/// motions are held at time 0, other released coordinates are solved for: by Newton's method and, where this finds
-/// nothing, by Settling. An equilibrium that is not stable is left along its unstable motion unless it is `wanted`. On
-/// success `state` is at rest there; on failure it is untouched. `update_norms`: those of the last solve.
+/// Finds an equilibrium under gravity and loads, with the scheme's interpolation. Prescribed motions are held at time
+/// 0, all other released coordinates are solved for. If loads have a potential and joints are not held firmly, the
+/// search is a Descent. Otherwise gravity and loads grow in `load_steps` equal steps, and each step is solved by
+/// Newton's method or, if that fails, by Settling. An unstable equilibrium is left along its unstable motion, unless
+/// `wanted` allows it. On success `state` is at rest in the equilibrium; on failure it is untouched. `update_norms`:
+/// those of the last solve.
 StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
                           Equilibrium wanted, State& state, std::vector<double>* update_norms = nullptr);
 

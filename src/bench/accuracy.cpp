@@ -22,22 +22,22 @@ namespace flexarm::bench {
 namespace {
 
 constexpr double kAccuracies[] = {1e-2, 1e-3, 1e-4, 1e-5};
-/// Of the processor, for each scene: what its search and its runs may take [s].
+/// Limits of processor time for each scene: for the search of fixed settings, and for the runs [s].
 constexpr double kSearchSeconds = 4, kRunSeconds = 1.5;
-/// The same where the reference is from outside, which costs no runs.
+/// The same limits for scenes with an outside reference, which needs no runs of its own [s].
 constexpr double kOutsideSearchSeconds = 1.5, kOutsideRunSeconds = 3;
-/// A finer run with shifted steps may take this long [s].
+/// Limit for a finer run with shifted steps [s].
 constexpr double kShiftedSeconds = 4;
-/// A reference that is farther off than this part of what is asked for judges nothing.
+/// A reference is not used if its error exceeds this fraction of the requested accuracy.
 constexpr double kGoodReference = 0.1;
-/// Of Newton's method in a reference.
+/// Tolerance of Newton's method in a reference.
 constexpr double kReferenceTolerance = 1e-9;
-/// A run that takes longer is timed once [s].
+/// Runs that take longer are timed only once [s].
 constexpr double kLong = 0.3;
-/// Nobody looks for errors below it.
+/// The search does not look for smaller errors.
 constexpr double kFinest = 1e-8;
 
-/// Times that show a scene's motion, by file: the others have this one [s].
+/// Durations that show the motion of a scene, by parts of file names; the default is kUntil [s].
 constexpr double kUntil = 1;
 double until_of(const std::string& file) {
   const std::pair<const char*, double> known[] = {
@@ -47,7 +47,7 @@ double until_of(const std::string& file) {
   return kUntil;
 }
 
-/// Scenes of the speed report and of config/ that have corners: tables of loads, pulses, dry friction.
+/// Whether a scene of the speed report or of config/ has corners: tables of loads, pulses, dry friction.
 bool is_cornered(const std::string& name) {
   const char* known[] = {
       "right_angle_cantilever", "flying_spaghetti", "demo_arm", "flexible_two_link_arm", "12_4", "joints"};
@@ -64,8 +64,8 @@ std::string text_of(const RunSettings& settings) {
   return fmt::format("{}, {}, {:.3g} s, {:.0e}", settings.mesh(), settings.scheme, settings.step, settings.tolerance);
 }
 
-/// Commands the tries of a run, times the last of them and counts its iterations. The clock is asked between intervals
-/// alone, as in the runs of a search: where steps take microseconds, it would be a part of them.
+/// Passes commands to the tries of a run, times the last one, and counts its iterations. It reads the clock only
+/// between intervals, as the runs of a search do: if steps take microseconds, clock readings would distort the times.
 class TimedTries : public RunWatcher {
  public:
   TimedTries(StepCommand command, double most_seconds)
@@ -94,8 +94,8 @@ class TimedTries : public RunWatcher {
   bool has_time_ = true;
 };
 
-/// With meshes that were chosen, the run as somebody gets it who asks for the accuracy; its times are those of this
-/// one.
+/// Runs to the requested accuracy as a user would, with automatically chosen meshes, and fills in `out`, with the times
+/// of this run.
 AccurateRun run_accurately(const AccuracyCase& one, const AutomaticMeshes& meshes, AccuracyOutcome& out) {
   Simulation simulation(with_settings(one.scene, meshes.settings));
   const auto commands = cli::effort_commands(one.commands);
@@ -114,8 +114,8 @@ AccurateRun run_accurately(const AccuracyCase& one, const AutomaticMeshes& meshe
   return run;
 }
 
-/// The reference of a search, and the same motion with half its step and a shifted grid: what differs is the error of
-/// the reference, if it is more than that which the search believes.
+/// The motion of a finer run with half the step and shifted steps, and an estimate of the error. It is the difference
+/// to the reference of the search or, if that is larger, the error that the search itself estimates for its reference.
 struct FinerRun {
   JudgedMotion motion;
   double error;
@@ -131,7 +131,8 @@ FinerRun finer_run(TrialRuns& trials, const AccuracyCase& one, const TuningResul
   return {std::move(*shifted), std::max(gap, found.reference_error)};
 }
 
-/// The error of what ran, and the best that a search finds for as small a one; empty: it finds none.
+/// Measures the error of the motion that ran. Returns the best fixed settings whose error is as small; empty: none
+/// found.
 std::optional<RunSettings> judge(TrialRuns& trials, const AccuracyCase& one, const JudgedMotion& motion,
                                  AccuracyOutcome& out) {
   TuningFreedom freedom;
@@ -141,7 +142,7 @@ std::optional<RunSettings> judge(TrialRuns& trials, const AccuracyCase& one, con
     goal.accuracy = accuracy;
     return tune(trials, goal, freedom, [](double, const std::string&) {});
   };
-  // Finer where the run is much better than was asked for.
+  // Smaller errors are tried, too, since the run may be much better than requested.
   for (double wanted = out.asked; wanted > kFinest; wanted *= 0.1) {
     const TuningResult found = search(wanted);
     if (!found.reference || found.reference_error > kGoodReference * out.asked) return std::nullopt;
@@ -163,8 +164,8 @@ std::optional<RunSettings> judge(TrialRuns& trials, const AccuracyCase& one, con
   return run.settings;
 }
 
-/// The run and the best fixed choice in turns, as a search times its best, so that neither has the machine at its worse
-/// moments: medians of three.
+/// Times the run and the best fixed settings alternately, as a search does, so that changes of the machine's speed
+/// affect them alike; takes medians of three.
 void time_in_turns(const AccuracyCase& one, const AutomaticMeshes& meshes, const std::function<double()>& time_fixed,
                    AccuracyOutcome& out) {
   std::vector<double> last, all, best;
@@ -180,7 +181,7 @@ void time_in_turns(const AccuracyCase& one, const AutomaticMeshes& meshes, const
   out.fixed_seconds = median(best);
 }
 
-/// Scenes whose meshes are given.
+/// The scene's own meshes, as if automatic_meshes() had chosen them.
 AutomaticMeshes given_meshes(const AccuracyCase& one) {
   AutomaticMeshes meshes;
   meshes.settings = settings_of(one.scene);
@@ -192,7 +193,7 @@ JudgedTimes times_of(const AccuracyCase& one) {
   return {one.until / one.intervals, one.intervals};
 }
 
-/// The best fixed choice, where the true motion is known.
+/// Compares with the best fixed settings, for a scene whose true motion is known.
 void compare(const AccuracyCase& one, FixedRuns& fixed, AccuracyOutcome& out) {
   const FixedRuns::Run* best = fixed.best(*out.error);
   if (!best) return;
@@ -211,8 +212,8 @@ void measure_outside(const AccuracyCase& one, FixedRuns& fixed, AccuracyOutcome&
   compare(one, fixed, out);
 }
 
-/// A flexible scene with corners: runs on shifted grids, each with twice the steps of the one before, until two agree.
-/// The first has 2.74 times the steps of the run that is judged, a number that no try has.
+/// The reference of a flexible scene with corners: runs with shifted steps, each with twice as many steps as the last
+/// one, until two runs agree. The first one has 2.74 times the steps of the run to be judged, a ratio that no try has.
 std::optional<FinerRun> shifted_reference(const AccuracyCase& one, const AccurateRun& run, double wanted) {
   RunSettings settings = settings_of(one.scene);
   settings.scheme = run.scheme();
@@ -259,7 +260,7 @@ bool has_given_meshes(const scene::SceneDescription& scene) {
   return std::all_of(beams.begin(), beams.end(), [](const BeamResolution& beam) { return beam.elements.has_value(); });
 }
 
-/// What ends a run is its shortcoming.
+/// Measures a scene for one accuracy. An exception that ends the run becomes its shortcoming.
 template <class Measure>
 AccuracyOutcome measure(const AccuracyCase& one, double asked, const Measure& measure_into) {
   AccuracyOutcome out;

@@ -1,4 +1,4 @@
-// The accuracy report as text.
+// Writes the accuracy report as text.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +12,7 @@
 namespace flexarm::bench {
 namespace {
 
-/// What is aimed at.
+/// Targets for the share of runs with larger errors, for the largest ratio, and for the cost.
 constexpr double kShareAbove = 0.05, kLargestRatio = 3, kLargestCost = 1.5;
 
 std::string number(double value, const char* format) {
@@ -22,7 +22,7 @@ std::string number(double value, const char* format) {
 /// Counts of outcomes.
 struct Summary {
   int runs = 0, met = 0, judged = 0, above = 0, dear = 0;
-  int bound = 0;  // of the dear ones, those whose scene names a scheme, and another one is the best choice
+  int bound = 0;  // number of expensive ones whose scene names a scheme, although the best choice has another
   double worst = 0;
   std::vector<double> costs, all_costs;
 
@@ -59,7 +59,7 @@ std::string corners_of(const AccuracyMeasurement& measurement) {
   return measurement.is_cornered ? "cornered" : "smooth";
 }
 
-/// Of the scenes with corners, and of the others.
+/// Summary of the scenes with corners, or of those without.
 Summary summary_of(const AccuracyReport& report, bool is_cornered) {
   Summary summary;
   for (const AccuracyMeasurement& measurement : report.measurements)
@@ -73,17 +73,17 @@ std::string target_line(const std::string& name, const Summary& all) {
   const bool is_accurate = all.above <= kShareAbove * all.judged && all.worst <= kLargestRatio;
   const bool is_cheap = !(median(all.costs) > kLargestCost);
   return fmt::format(
-      "{}: true error at most what was asked in {:.1f} % of {} judged runs (target: 95 %), worst {:.3g} times it "
-      "(target: 3): {}; "
-      "cost over the best fixed choice {} in the median of {} (target: {:g}): {}; {} of {} runs say that they do not "
-      "keep it.\n",
+      "{}: true error at most the requested one in {:.1f} % of {} judged runs (target: 95 %), at worst {:.3g} times "
+      "the requested one (target: 3): {}; "
+      "cost over the best fixed choice {} in the median of {} (target: {:g}): {}; {} of {} runs report that they do "
+      "not meet it.\n",
       name, 100 - 100.0 * all.above / all.judged, all.judged, all.worst, is_accurate ? "met" : "missed",
       number(median(all.costs), "{:.2f}"), all.costs.size(), kLargestCost, is_cheap ? "met" : "missed",
       all.runs - all.met, all.runs);
 }
 
 std::string summary_table(const AccuracyReport& report) {
-  std::map<double, Summary, std::greater<>> by_accuracy[2];  // smooth, cornered
+  std::map<double, Summary, std::greater<>> by_accuracy[2];  // [0]: smooth, [1]: cornered
   std::map<std::string, Summary> by_group;
   for (const AccuracyMeasurement& measurement : report.measurements)
     for (const AccuracyOutcome& outcome : measurement.outcomes) {
@@ -93,7 +93,7 @@ std::string summary_table(const AccuracyReport& report) {
         by_group[outcome.is_of_own_scheme ? "best fixed choice: scene's scheme" : "best fixed choice: another scheme"]
             .add(outcome);
     }
-  std::string text = head({"", "runs", "met, as they say", "judged", "error above", "worst error over asked",
+  std::string text = head({"", "runs", "met, as reported", "judged", "error above", "worst error over requested",
                            "with a best fixed choice", "cost over it, median", "above 1.5", "with all tries, median"});
   for (const bool is_cornered : {true, false}) {
     const char* name = is_cornered ? "cornered" : "smooth";
@@ -128,21 +128,23 @@ std::string scenes_of(const AccuracyScope& scope) {
 }
 
 constexpr const char* kIntroduction =
-    " are run as `flexarm simulate --accuracy` runs them: steps, and elements of beams with\n"
-    "`elements=\"auto\"`, are chosen for the accuracy. *Cornered* scenes have jumps, kinks, stops, dry friction, play, "
-    "motors and servos at\ntheir limits or sampled ones; *smooth* ones have none.\n\n"
-    "The true error is that against a motion which is not flexarm's, where the mechanism is rigid and plane: equations "
-    "written from the\ndocumentation, solved by scipy's DOP853 with tolerances of 1e-12 and corners located in time "
-    "(`scripts/outside_references`; two runs\nof each agree to 1e-9). For the others, groups *by finer runs*, it is a "
-    "run of flexarm with steps that are shifted against\nthose of all others: with corners, one that agrees to a tenth "
-    "of what was asked with another one of twice the step; else one with\nhalf the step of a run that is estimated to "
-    "be ten times as accurate as what was asked. Where there is none, nothing is judged.\nWhere the scene gives a "
-    "number "
-    "of elements, that mesh is the truth.\n\n"
-    "The best fixed choice is the cheapest of runs with equal steps whose error is as small as that which the run "
-    "really "
-    "has: scheme, step,\ntolerance, and meshes where they are free ([notes](../notes/tuning.md)). Times are the "
-    "processor's, medians of three in turns where two are\ncompared; iterations are those of Newton's method.\n\n";
+    R"( are run by `flexarm simulate --accuracy`, which chooses the steps for the accuracy, and the elements
+of beams with `elements="auto"`. *Cornered* scenes have jumps, kinks, stops, dry friction, play, motors and servos at
+their limits, or sampled servos; *smooth* ones have none of these.
+
+The true error is measured against a reference motion. For rigid mechanisms in a plane, it is not computed by flexarm,
+but by scipy's DOP853 from equations written from the documentation, with tolerances of 1e-12 and corners located in time
+(`scripts/outside_references`; two runs of each reference agree to 1e-9). For the other groups, *by finer runs*, the
+reference is a run of flexarm whose steps are shifted against those of all other runs. With corners, it must agree with
+a run of twice its step to a tenth of the requested accuracy. Without corners, it has half the step of a run that is
+estimated to be ten times as accurate as requested. Runs without such a reference are not judged. If the scene gives a
+number of elements, errors are relative to that mesh.
+
+The best fixed choice is the cheapest run with equal steps whose error is at most the true error of the accurate run:
+scheme, step, tolerance, and meshes where they are free ([notes](../notes/tuning.md)). Times are processor times, medians
+of three in turns where two are compared; iterations are those of Newton's method.
+
+)";
 
 }  // namespace
 
@@ -151,16 +153,16 @@ std::string accuracy_summary(const AccuracyReport& report) {
 }
 
 std::string to_markdown(const AccuracyReport& report, const std::string& picture) {
-  std::string text = "# Accuracy asked for, error got\n\nWritten by `flexarm bench accuracy`. " +
+  std::string text = "# Requested accuracy and true error\n\nWritten by `flexarm bench accuracy`. " +
                      scenes_of(report.scope) + kIntroduction;
   if (report.scope.quick) text += "**Quick run: shows that it works, measures nothing.**\n\n";
   text += summary_table(report);
   if (!picture.empty())
-    text += fmt::format("\n![True error over asked-for error, and cost over the best fixed choice]({})\n", picture);
+    text += fmt::format("\n![True error over requested error, and cost over the best fixed choice]({})\n", picture);
   text += "\n## All runs\n\n";
-  text +=
-      head({"scene", "corners", "asked", "said", "true error", "true over asked", "run [ms]", "with all tries [ms]",
-            "best fixed [ms]", "cost", "iterations of the run", "of the best fixed", "best fixed choice, or why not"});
+  text += head({"scene", "corners", "requested", "estimated", "true error", "true over requested", "run [ms]",
+                "with all tries [ms]", "best fixed [ms]", "cost", "iterations of the run", "of the best fixed",
+                "best fixed choice, or why not"});
   for (const AccuracyMeasurement& measurement : report.measurements)
     for (const AccuracyOutcome& outcome : measurement.outcomes) text += outcome_row(measurement, outcome);
   return text + fmt::format("\n{:.0f} s of computing.\n", report.seconds);

@@ -14,14 +14,15 @@ namespace flexarm::bench {
 namespace {
 
 constexpr double kTolerances[] = {1e-3, 1e-2, 1e-4, 1e-6};
-/// Steps in an interval; each is tried until one is good enough.
+/// Numbers of steps per interval; they are tried until a run is good enough.
 constexpr int kSteps[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
-/// Where no run is good enough yet, one may take this long; and so much longer than the best one [s].
+/// Limit for a run while no good one is known [s], and then relative to the best one's time.
 constexpr double kPatience = 0.4, kMorePatience = 3;
-/// Of the steps of the shifted grid, the first one in an interval.
+/// Length of the first step of an interval in a shifted run, relative to the others.
 constexpr double kShift = 0.37;
 
-/// With the meshes, the scheme and the tolerance, but the scene's own step: on it depend equations.
+/// A simulation with these meshes, scheme and tolerance, but built with the scene's own step, on which equations
+/// depend.
 Simulation made_with(const scene::SceneDescription& scene, RunSettings settings) {
   settings.step = scene.integrator.step;
   return Simulation(with_settings(scene, settings));
@@ -65,16 +66,16 @@ FixedRuns::Run FixedRuns::made(const RunSettings& settings, double most_seconds)
     }
     run.error = motion_error(motion, truth_, truth_.largest_displacement());
   } catch (const ModelError&) {
-    // A scheme that does not take the scene.
+    // The scheme cannot run the scene.
   } catch (const std::invalid_argument&) {
-    // A step that does not divide the times of samples.
+    // The step does not divide the times of samples.
   }
   return run;
 }
 
 const FixedRuns::Run& FixedRuns::run(const RunSettings& settings, double most_seconds) {
   auto found = runs_.find(settings);
-  // One that was given up may come to its end with more patience.
+  // A run that was stopped may reach its end with more time.
   if (found == runs_.end() || (found->second.is_given_up && found->second.seconds < 0.5 * most_seconds)) {
     go_on_();
     found = runs_.insert_or_assign(settings, made(settings, most_seconds)).first;
@@ -87,7 +88,7 @@ const FixedRuns::Run* FixedRuns::best(double error) {
   const Run* best = nullptr;
   for (const std::string& scheme : schemes_alike(scene_.integrator, false))
     for (const double tolerance : kTolerances) {
-      const Run* coarser = nullptr;  // that is good
+      const Run* coarser = nullptr;  // the run before, if it was good
       for (const int steps : kSteps) {
         if (seconds_ < 0) return best;
         RunSettings settings = settings_of(scene_);
@@ -124,7 +125,7 @@ std::optional<JudgedMotion> shifted_motion(const scene::SceneDescription& scene,
       if (processor_seconds() - begin > most_seconds) return std::nullopt;
       motion.add(judged.positions(simulation));
     }
-  } catch (const std::invalid_argument&) {  // servos are sampled at ends of steps
+  } catch (const std::invalid_argument&) {  // servos are sampled, which requires equal steps
     return std::nullopt;
   }
   return motion;

@@ -1,6 +1,6 @@
 #pragma once
-/// The cheapest run with fixed steps whose true error is small enough, where the true motion is known; and finer runs
-/// with shifted steps, where it is not.
+/// Finds the cheapest run with fixed steps whose true error is small enough, for scenes whose true motion is known; and
+/// makes finer runs with shifted steps, for scenes whose true motion is not known.
 
 #include <functional>
 #include <map>
@@ -10,31 +10,34 @@
 
 namespace flexarm::bench {
 
-/// What commands a simulation before each step; empty: nothing does.
+/// Makes the function that commands a simulation before each step; empty: no commands.
 using Commands = std::function<StepCommand(const Simulation&)>;
 
-/// Runs of one scene with fixed steps, each made once, judged by its true motion. All solve the scene's own equations:
-/// what depends on its step, as the stiffness of stops, is that of the scene.
+/// Runs of one scene with fixed steps. Each is made once, and compared with the true motion. All runs solve the same
+/// equations: quantities that depend on the scene's step, such as the stiffness of stops, are those of the scene's own
+/// step.
 class FixedRuns {
  public:
   struct Run {
     RunSettings settings;
-    double seconds = 0;  ///< of the processor
+    double seconds = 0;  ///< processor time
     long iterations = 0;
-    double error = 0;          ///< relative to the way of the true motion; infinite: it has not come to its end
-    bool is_given_up = false;  ///< because it took too long
+    double error =
+        0;  ///< relative to the largest displacement of the true motion; infinite: the run did not reach its end
+    bool is_given_up = false;  ///< whether the run was stopped because it took too long
   };
 
-  /// `seconds`: of the processor, for all runs of the search. `go_on()` is called before each.
+  /// @param seconds  processor time for all runs of the search
+  /// @param go_on    called before each run
   FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, Commands commands, JudgedMotion truth,
             double seconds, std::function<void()> go_on);
 
-  /// Of the schemes that conserve what the scene's does, with steps of 1, 1/2, 1/3, ... of the intervals and four
-  /// tolerances of Newton's method, the run that takes least time of those whose error is at most `error`, and that of
-  /// the next finer step, too: one that is good by luck is nobody's choice. Empty: none was found in the time that
-  /// there is.
+  /// The fastest run whose error is at most `error`. Schemes that conserve the same as the scene's are tried, with
+  /// steps of 1, 1/2, 1/3, ... of an interval, and four tolerances of Newton's method. The run with the next smaller
+  /// step must meet `error`, too, so that no run counts that is good only by chance. Null: none was found within the
+  /// time limit.
   const Run* best(double error);
-  /// The same run once more: the processor's seconds.
+  /// Processor time of the same run, made once more.
   double time_again(const Run& run) const { return made(run.settings, 1e9).seconds; }
 
  private:
@@ -50,9 +53,9 @@ class FixedRuns {
   std::map<RunSettings, Run> runs_;
 };
 
-/// The motion with these settings on a grid of steps that no run has which divides an interval equally: in each the
-/// first step is 0.37, the last 0.63 of the others. Empty: servos are sampled, it takes more than `most_seconds` of the
-/// processor, or a step fails.
+/// The motion with these settings, but with steps that no other run has and that still divide an interval: in each
+/// interval, the first step has 0.37 and the last one 0.63 times the usual length. Empty if servos are sampled, if the
+/// run takes more than `most_seconds` of processor time, or if a step fails.
 std::optional<JudgedMotion> shifted_motion(const scene::SceneDescription& scene, const RunSettings& settings,
                                            const JudgedTimes& times, const Commands& commands, double most_seconds);
 

@@ -25,16 +25,16 @@ constexpr bool kMayLimitMemory = true;
 constexpr bool kMayLimitMemory = true;
 #endif
 
-constexpr int kWallSecondsPerSecond = 10;  // others may keep the processor busy
+constexpr int kWallSecondsPerSecond = 10;  // other processes may keep the processor busy
 
 void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit value{soft, hard};
   setrlimit(resource, &value);
 }
 
-/// Of the calling process.
+/// Applies the limits to the calling process.
 void apply(const ProcessLimits& limits) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left to read what comes out
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // end with the parent, since nobody would read the results
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
   const rlim_t seconds = static_cast<rlim_t>(limits.seconds);
   limit(RLIMIT_CPU, seconds, seconds + 1);
@@ -55,12 +55,12 @@ ChildEnd run_in_child(const std::function<void()>& work, const ProcessLimits& li
   if (child == 0) {
     apply(limits);
     [&]() noexcept { work(); }();
-    _exit(0);  // the parent's buffers and files are the parent's
+    _exit(0);  // without flushing buffers and closing files that belong to the parent
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw std::runtime_error("a process was lost");
-    kill(child, SIGKILL);  // somebody wants this process to end
+    kill(child, SIGKILL);  // a signal asks this process to end
   }
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   return {signal, signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM};

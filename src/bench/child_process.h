@@ -1,5 +1,5 @@
 #pragma once
-/// Work in a separate process: if it crashes, the caller goes on.
+/// Runs work in a separate process, so that the caller survives a crash.
 
 #include <sys/mman.h>
 
@@ -10,7 +10,7 @@
 
 namespace flexarm::bench {
 
-/// A value in memory that a child process shares with its parent: what the child had written before it ended is there.
+/// A value in memory shared by a child process and its parent. The parent can read what the child wrote before its end.
 template <class Value>
 class Shared {
   static_assert(std::is_trivially_copyable_v<Value>);
@@ -32,22 +32,22 @@ class Shared {
 };
 
 struct ProcessLimits {
-  int seconds = 10;                          ///< of the processor; ten times as much by the clock on the wall
-  std::size_t bytes = std::size_t{2} << 30;  ///< of address space; not with the address or thread sanitizer
+  int seconds = 10;                          ///< processor time; the limit of wall time is ten times as long
+  std::size_t bytes = std::size_t{2} << 30;  ///< address space; no limit with the address or thread sanitizer
 };
 
-/// Whether memory can be limited in this program.
+/// Whether memory can be limited in this build.
 bool limits_memory();
 
 /// How a child ended.
 struct ChildEnd {
-  int signal = 0;                ///< that ended it; 0: it ended by itself
-  bool ran_out_of_time = false;  ///< one of the limits' signals
+  int signal = 0;                ///< signal that ended the child; 0: it ended by itself
+  bool ran_out_of_time = false;  ///< whether that was the signal of a time limit
 };
 
-/// Calls work() in a copy of this process, which has one thread only, and waits. An exception that escapes ends the
-/// child with SIGABRT.
-/// @throws std::runtime_error if there is no process to be had.
+/// Calls work() in a copy of this process, which has only one thread, and waits for it. An exception that leaves work()
+/// ends the child with SIGABRT.
+/// @throws std::runtime_error if no process can be created
 ChildEnd run_in_child(const std::function<void()>& work, const ProcessLimits& limits);
 
 }  // namespace flexarm::bench

@@ -1,12 +1,12 @@
 #pragma once
-/// Drift of the invariants of a free flight.
+/// Measures the drift of the invariants of a free flight.
 
 #include "bench/run.h"
 
 namespace flexarm::bench {
 
-/// Largest changes since the start. That of the energy relative to the largest energy, that of the linear momentum to
-/// sqrt(2 m T), that of the angular momentum to itself.
+/// Largest changes since the start: of the energy relative to the largest energy, of the linear momentum relative to
+/// sqrt(2 m T), and of the angular momentum relative to itself.
 struct InvariantDrift {
   double energy = 0;  ///< kinetic and strain
   double growth = 0;  ///< largest rise of the energy above an earlier value

@@ -8,7 +8,7 @@ namespace flexarm::bench {
 Measured<Cost> cost_of_run(const Variant& variant, bool quick) {
   const int steps = quick ? 5 : 150;
   Simulation arm = simulation(swinging_arm(), variant, 2e-3, 1e-8);
-  arm.step();  // allocates, and knows no increment to continue
+  arm.step();  // the first step allocates memory, and has no last increment to extrapolate
   Cost cost;
   const double begin = processor_seconds();
   const std::optional<Failure> failure =

@@ -1,5 +1,5 @@
 #pragma once
-/// Computing time per step.
+/// Measures computing time per step.
 
 #include <algorithm>
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace flexarm::bench {
 
-/// Runs of which the median counts.
+/// Number of runs, of which the median counts.
 constexpr int kCostRuns = 3;
 
 struct Cost {
-  double seconds = 0;     ///< of the processor per step, median of the runs
+  double seconds = 0;     ///< processor time per step, median of the runs
   double iterations = 0;  ///< of Newton's method per step
 };
 
 /// One run of swinging_arm (24 elements, about 300 unknowns) with steps of 2 ms.
 Measured<Cost> cost_of_run(const Variant& variant, bool quick);
 
-/// Runs of all schemes take turns, so that a change of the machine's speed meets all. Calls progress() after each run.
+/// Runs all variants in turns, so that changes of the machine's speed affect all. Calls progress() after each run.
 template <class Progress>
 std::vector<Measured<Cost>> costs(const std::vector<Variant>& variants, bool quick, const Progress& progress) {
   std::vector<std::array<Measured<Cost>, kCostRuns>> runs(variants.size());

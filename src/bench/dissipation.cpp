@@ -7,9 +7,9 @@ namespace flexarm::bench {
 namespace {
 
 constexpr double kStep = 0.01;         // s
-constexpr double kNoiseFloor = 1e-26;  // of the energy, relative to its first value: round-off of 1 m is 4e-30
+constexpr double kNoiseFloor = 1e-26;  // of the energy, relative to its initial value; round-off of 1 m is 4e-30
 
-/// Slope of y over 0, 1, 2, ...
+/// Least-squares slope of y over 0, 1, 2, ...
 double slope(const std::vector<double>& y) {
   const double n = static_cast<double>(y.size()), middle = 0.5 * (n - 1);
   double numerator = 0, denominator = 0;
@@ -20,8 +20,8 @@ double slope(const std::vector<double>& y) {
   return denominator > 0 ? numerator / denominator : 0;
 }
 
-/// Energies, divided by half the stiffness [m^2], after each step of a motion that starts with a displacement u [m] and
-/// a velocity omega v [m/s].
+/// Energies, divided by half the stiffness [m^2], after each step of a motion that starts with the displacement u [m]
+/// and the velocity omega v [m/s].
 Measured<std::vector<double>> energies_of_decay(const Variant& variant, double omega, double u, double v, int steps) {
   Simulation bar = simulation(axial_oscillator(omega), variant, kStep);
   const int tip = std::get<BeamGroup<2>>(model_of(bar).beams).elements.front().nodes[1];
@@ -29,7 +29,8 @@ Measured<std::vector<double>> energies_of_decay(const Variant& variant, double o
   state.nodes[tip].position.x() += u;
   state.nodes[tip].velocity.x() = omega * v;
   state.nodes[tip].acceleration.x() = -omega * omega * u;
-  for (StrainMemory& memory : state.strain_memory) memory.rate[0] = omega * v;  // of the axial strain: 1 m long
+  for (StrainMemory& memory : state.strain_memory)
+    memory.rate[0] = omega * v;  // axial strain rate; the bar is 1 m long
   restore(bar, state);
   Measured<std::vector<double>> out;
   out.failure = run(bar, steps, [&](const StepResult&) {
@@ -54,14 +55,14 @@ Measured<DissipationPoint> dissipation(const Variant& variant, double frequency,
              pulled = energies_of_decay(variant, omega, amplitude, 0, steps);
   for (const auto* motion : {&pushed, &pulled})
     if (motion->failure) return {motion->failure, {frequency, 0}};
-  // Of one motion alone the energy may pass through zero.
+  // The sum of two motions, since the energy of a single one may pass through zero.
   std::vector<double> logarithms;
   for (int n = 0; n < steps; ++n) {
     const double energy = pushed.value[n] + pulled.value[n];
     if (energy < kNoiseFloor * amplitude * amplitude) break;
     logarithms.push_back(std::log(energy));
   }
-  // The first quarter holds what dies faster than the slowest root.
+  // The first quarter contains parts that decay faster than the slowest root.
   logarithms.erase(logarithms.begin(), logarithms.begin() + static_cast<long>(logarithms.size() / 4));
   return {{}, {frequency, logarithms.size() < 2 ? 0.0 : std::exp(0.5 * slope(logarithms))}};
 }

@@ -14,7 +14,7 @@ struct Twisting {
   double twist, angular_velocity;
 };
 
-/// The beam's nodes and its mass points spin with `mean` and with -+ `relative` at its ends [rad/s].
+/// A run in which nodes and mass points spin at the rate `mean`, plus or minus `relative` at the beam's ends [rad/s].
 Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, double relative) {
   Simulation bar = simulation(free_bar(), variant, 0.1);
   const auto& element = std::get<BeamGroup<2>>(model_of(bar).beams).elements.front();
@@ -26,7 +26,8 @@ Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, do
     const auto& shape = element.mass_points[k].shape;
     state.mass_points[element.first_mass_point + k].angular_velocity.x() = mean + relative * (shape[1] - shape[0]);
   }
-  for (StrainMemory& memory : state.strain_memory) memory.rate[3] = 2 * relative;  // of the twist: 1 m long
+  for (StrainMemory& memory : state.strain_memory)
+    memory.rate[3] = 2 * relative;  // rate of twist; the beam is 1 m long
   restore(bar, state);
   Measured<std::vector<Twisting>> out;
   out.failure = run(bar, 12, [&](const StepResult&) {

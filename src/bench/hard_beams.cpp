@@ -14,12 +14,12 @@ namespace {
 using namespace urdf;
 
 const Vector3 kTip = Vector3::UnitX();
-/// Of the first bending mode of a cantilever with EI = mass per length = length = 1 [s].
+/// Period of the first bending mode of a cantilever with EI = mass per length = length = 1 [s].
 constexpr double kPeriod = 2 * kPi / 3.516015;
-/// Of the same column [N].
+/// Euler load of this cantilever [N].
 constexpr double kEulerLoad = kPi * kPi / 4;
 
-/// Along x from the world's origin, 1 m, 8 elements.
+/// A cantilever along x from the world's origin, 1 m, 8 elements.
 std::string cantilever(const std::string& section, const std::string& simulation, const std::string& damping = "") {
   return scene(joint("clamp", "fixed", "world", "beam") + beam("beam", kTip, section, 8, damping),
                simulation + probe("beam", kTip));
@@ -85,11 +85,12 @@ void add_long_steps(std::vector<HardCase>& cases) {
                 unit_cantilever(1e5, load("beam", kTip, {0, 0, force})), periods * kPeriod, 30 * periods * kPeriod);
 }
 
-/// Beck's column: a follower force of the magnitude `force` EI/L^2, and a small pulse. It flutters from 20.05 on.
+/// Beck's column: a follower force of the magnitude `force` EI/L^2, and a small pulse. From 20.05 on, the column
+/// flutters.
 void add_beck(HardGroup& group, double force) {
   constexpr double kFlutterLoad = 20.05, kPulse = 1e-3;  // EI/L^2; N s
   constexpr double kPulseEnergy =
-      5 * kPulse * kPulse / (2 * 0.25);  // at the tip each mode weighs a quarter of the beam
+      5 * kPulse * kPulse / (2 * 0.25);  // at the tip, the modal mass of each mode is a quarter of the beam's mass
   HardCase& hard = group.add(fmt::format("Beck's column, P = {:g} EI/L^2", force),
                              unit_cantilever(1e5, load("beam", kTip, {-force, 0, 0}, "1", "follower") +
                                                       load("beam", kTip, {0, 0, 10 * kPulse}, "0:1 0.095:1 0.105:0")),
@@ -128,7 +129,7 @@ void add_blows(std::vector<HardCase>& cases) {
     group.add("gravity of " + exponent(g) + " m/s^2", cantilever(circle(0.01), gravity({0, 0, -g})), 1e-3, 0.1);
   group.add("follower force of 1000 EI/L^2 across the tip",
             unit_cantilever(1e5, load("beam", kTip, {0, 0, 1000}, "min(t, 1)", "follower")), 0.002, 0.5);
-  // Each half of an element is bent through half of that, and rotation vectors have their singularity at 2 pi.
+  // Each half of an element is bent by half of this angle, and rotation vectors are singular at 2 pi.
   for (const double bend : {1.5, 1.9, 2.5, 4.5})
     group
         .add(fmt::format("two elements, slowly bent through {:g} pi each", bend),

@@ -26,12 +26,12 @@ std::string sphere(double radius) {
 std::string cuboid(const Vector3& size) {
   return fmt::format("box size=\"{}\"", triple(size));
 }
-/// About z.
+/// A cylinder along z.
 std::string barrel(double radius, double length) {
   return fmt::format("cylinder radius=\"{}\" length=\"{}\"", radius, length);
 }
 
-/// On a floating joint of its own name.
+/// A free body on a floating joint called `name`.
 std::string free_body(const std::string& name, double mass, const Vector3& inertia, const std::string& collisions) {
   return joint(name, "floating", "world", name + "_body") +
          fmt::format(
@@ -53,7 +53,7 @@ std::string can(const std::string& name, double mass, double radius, double leng
   const double across = mass * (3 * radius * radius + length * length) / 12;
   return free_body(name, mass, {across, across, mass * radius * radius / 2}, collision(barrel(radius, length)));
 }
-/// A link fixed in the world.
+/// A link that is fixed to the world.
 std::string built(const std::string& name, const std::string& geometry, const Vector3& at = Vector3::Zero(),
                   const Vector3& rpy = Vector3::Zero()) {
   return fmt::format(
@@ -64,12 +64,12 @@ std::string built(const std::string& name, const std::string& geometry, const Ve
 std::string half_space(const std::string& name, const Vector3& normal, double offset) {
   return fmt::format("<ground name=\"{}\" normal=\"{}\" offset=\"{}\"/>\n", name, triple(normal), offset);
 }
-/// Of all; `law`: attributes.
+/// Contact between all links and grounds; `law`: attributes.
 std::string contact(const std::string& law) {
   return "<contact first=\"*\" second=\"*\" " + law + "/>\n";
 }
 
-/// Where a free body starts, how it is turned about x, y, z, and its velocity and rate.
+/// Initial position of a free body, rotation about x, y, z, velocity and angular velocity.
 std::string start(const std::string& name, const Vector3& at, const Vector3& rotation = Vector3::Zero(),
                   const Vector3& velocity = Vector3::Zero(), const Vector3& rate = Vector3::Zero()) {
   std::string out;
@@ -80,7 +80,7 @@ std::string start(const std::string& name, const Vector3& at, const Vector3& rot
   return out + initial_field(name + "_body", velocity, rate);
 }
 
-/// Of a thing that is called a beam, on a floating joint.
+/// A flexible free body "b_body" on the floating joint "b".
 std::string free_beam(const Vector3& to, const std::string& section, int elements, const std::string& more = "") {
   return joint("b", "floating", "world", "b_body") + beam("b_body", to, section, elements, more);
 }
@@ -123,7 +123,7 @@ void add_several_at_once(HardGroup& group) {
     balls += ball(fmt::format("b{}", i), 1, 0.05);
     starts += start(fmt::format("b{}", i), 0.2 * outwards, kZero, -outwards);
   }
-  // They meet where their middles are 0.1 m apart, 0.0577 m off the middle, and go back as they came.
+  // The balls meet when their centres are 0.1 m apart, 0.0577 m from the middle, and return the way they came.
   add(group, "three balls meet at once", balls + contact("restitution=\"1\""), starts, 1e-3, 0.4,
       coordinate_at("b0/x", 0.4 - 0.2 + 2 * 0.1 / std::sqrt(3), 0.2, 0.05));
   std::string rack, racked;
@@ -142,7 +142,7 @@ void add_several_at_once(HardGroup& group) {
   add(group, "table on nine legs: redundant",
       free_body("b", 5, {0.5, 0.5, 0.9}, table) + kFloor + contact("friction=\"0.5\""),
       kGravity + start("b", {0, 0, 0.41}, {0.02, 0.01, 0}), 1e-3, 1, coordinate_at("b/z", 0.4, 0.002, 1));
-  // An arm that is stretched straight at a wall, and one that is hit along itself.
+  // An arm that is stretched straight against a wall, and one that is hit along its axis.
   const std::string arm = joint("shoulder", "continuous", "world", "upper", {0, 0, 1}, axis({0, 1, 0})) +
                           body("upper", 1, 0.01, {0.25, 0, 0}) +
                           joint("elbow", "continuous", "upper", "fore", {0.5, 0, 0}, axis({0, 1, 0})) +
@@ -184,7 +184,7 @@ void add_masses_and_stiffnesses(HardGroup& group) {
 }
 
 void add_short_hits(HardGroup& group) {
-  // It falls from 0.05 m with 3 m/s.
+  // A ball falls from 0.05 m with an initial velocity of 3 m/s.
   const double fast = std::sqrt(9 + 2 * 9.81 * 0.05), fall = (fast - 3) / 9.81, round = 2 * fast / 9.81;
   const double last = std::fmod(2 - fall, round);
   add(group, "elastic hits of a thousandth of a step, steps of 0.01 s",
@@ -210,7 +210,7 @@ void add_short_hits(HardGroup& group) {
       start("b", {-0.5, 0.013, 1e-3}, kZero, {100, 0, 0}), 1e-3, 0.05);
 }
 
-/// Never so high, link "b_body".
+/// The body "b_body" must stay below this height.
 Bound lower_than(double height) {
   return {"is thrown up", [height](const Simulation& s) { return position_of(s, "b/z") / height; }};
 }
@@ -280,7 +280,7 @@ void add_steps_sizes_speeds(HardGroup& group) {
       kGravity + start("b", {0, 0, 1}, {0, 0.3, 0}), 0.05, 2);
   add(group, "cube of 10 um", cube("b", 1e-12, 1e-5) + kFloor + contact("friction=\"0.5\""),
       kGravity + start("b", {0, 0, 1.5e-5}, {0.3, 0.2, 0}), 1e-5, 5e-3, coordinate_at("b/z", 5e-6, 5e-7, 1));
-  // It hits after 0.5 ms and leaves with half of its speed.
+  // It hits the ground after 0.5 ms and leaves with half of its speed.
   add(group, "shot of 0.1 mm at 100 m/s", ball("b", 4e-9, 5e-5) + kFloor + contact("restitution=\"0.5\""),
       start("b", {0, 0, 0.05005}, kZero, {0, 0, -100}), 1e-3, 0.02,
       coordinate_at("b/z", 5e-5 + 50 * 0.0195, 0.975, 0.02));

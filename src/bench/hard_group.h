@@ -1,5 +1,5 @@
 #pragma once
-/// How the lists of hard cases are written: group by group, each case with the result of a right run.
+/// Helpers to write lists of hard cases: cases are added to groups, with the results that correct runs have.
 
 #include <optional>
 #include <string>
@@ -14,7 +14,7 @@ class HardGroup {
  public:
   HardGroup(std::vector<HardCase>& cases, std::string name) : cases_(cases), name_(std::move(name)) {}
 
-  /// What is returned may be changed until the next case is added. [s]
+  /// Adds a case; `step`, `until` [s]. The returned case may be changed until the next one is added.
   HardCase& add(const std::string& name, const std::string& scene, double step, double until,
                 const std::optional<Target>& target = {}) {
     HardCase hard;
@@ -50,20 +50,20 @@ class HardGroup {
   std::string name_;
 };
 
-/// Position of a coordinate, which must be there [rad or m].
+/// Position of a coordinate, which must exist [rad or m].
 double position_of(const Simulation& simulation, const std::string& coordinate);
 
-/// Position of the only probe at the end; closed form [m].
+/// A target for the position of the only probe at the end, by a closed form [m].
 Target probe_at(const Vector3& expected, double scale, double tolerance);
-/// The same by a run with another step [s].
+/// The same, by a reference run with another step [s].
 Target probe_by_step(double step, double scale, double tolerance);
-/// A coordinate at the end; closed form [rad or m].
+/// A target for a coordinate at the end, by a closed form [rad or m].
 Target coordinate_at(const std::string& coordinate, double expected, double scale, double tolerance);
-/// The same by a run of `scene` with a step of its own [s]; an empty scene: the case's.
+/// The same, by a reference run of `scene` with its own step [s]; an empty scene: that of the case.
 Target coordinate_by_run(const std::string& coordinate, const std::string& scene, double step, double scale,
                          double tolerance);
 
-// The groups, in files of what they are about.
+// The groups, each defined in a file by its subject.
 void add_beam_cases(std::vector<HardCase>& cases);
 void add_motion_cases(std::vector<HardCase>& cases);
 void add_slider_cases(std::vector<HardCase>& cases);

@@ -21,7 +21,7 @@ std::string couple(const std::string& attributes) {
 
 void add_couplings(std::vector<HardCase>& cases) {
   HardGroup group(cases, "screw");
-  constexpr double kInertia = 0.01;  // kg m^2; the mass is 1 kg, the torque 1 N m, for 1 s
+  constexpr double kInertia = 0.01;  // kg m^2; the mass is 1 kg, and a torque of 1 N m acts for 1 s
   for (const double pitch : {1e-6, 1e-3, 1.0, 1e3}) {
     const double angle = 0.5 / (kInertia + pitch * pitch);
     group.add(fmt::format("pitch {:g} m/rad", pitch),
@@ -60,7 +60,7 @@ std::string limits(double lower, double upper, double effort = 0) {
   return fmt::format("<limit lower=\"{}\" upper=\"{}\" effort=\"{}\" velocity=\"0\"/> ", lower, upper, effort);
 }
 
-/// The share of a tenth of the range by which a stop has given way.
+/// Measures how far a stop gives way, relative to a tenth of the range.
 Bound stop_holds(const std::string& coordinate, double lower, double upper) {
   return {"stop gives way by a tenth of the range", [=](const Simulation& s) {
             const double q = position_of(s, coordinate);
@@ -68,7 +68,7 @@ Bound stop_holds(const std::string& coordinate, double lower, double upper) {
           }};
 }
 
-/// Where gravity or an effort presses.
+/// Stops against which gravity or an effort presses.
 void add_pressed_stops(HardGroup& group) {
   const auto falling = [](double lower, double upper, double start, const std::string& simulation) {
     return scene(joint("rail", "prismatic", "world", "ball", Vector3::Zero(), axis({0, 0, 1}) + limits(lower, upper)) +
@@ -127,7 +127,7 @@ std::string friction(const std::string& law, double effort, double coefficient =
                      law, coefficient);
 }
 
-/// A block of 1 kg, dragged over the floor by a leaf spring whose other end goes at a constant speed.
+/// A block of 1 kg that is dragged over the floor by a leaf spring whose other end moves at a constant speed.
 std::string dragged_block(const std::string& law, double speed) {
   return scene(joint("drive", "prismatic", "world", "hand", {0, 0, 1}, axis({1, 0, 0}) + limits(-1e3, 1e3)) +
                    body("hand", 0.1, 1e-4) + joint("grip", "fixed", "hand", "leaf") +
@@ -143,7 +143,7 @@ void add_friction(std::vector<HardCase>& cases) {
   for (const std::string law : {"smooth", "coulomb"})
     for (const double speed : {1e-6, 1e-3, 1.0})
       group.add(fmt::format("stick-slip at {:g} m/s, {}", speed, law), dragged_block(law, speed), 0.01, 5);
-  // A slope of 30 degrees.
+  // A block on a slope of 30 degrees.
   const double slope = kPi / 6, along = kGravity * std::sin(slope), across = kGravity * std::cos(slope);
   for (const double coefficient : {0.3, 0.6}) {
     const double acceleration = std::max(0.0, along - coefficient * across);
@@ -198,7 +198,7 @@ void add_efforts(std::vector<HardCase>& cases) {
               0.01, 1);
 }
 
-/// Angular acceleration at which the fastest of two coupled wheels turns by a tenth of a radian in the last step.
+/// Angular acceleration with which the faster of two coupled wheels turns by 0.1 rad in the last step.
 double gentle(double ratio, double step, double until) {
   return 0.1 / (std::max(ratio, 1.0) * until * step);
 }

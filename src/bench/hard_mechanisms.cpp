@@ -38,7 +38,7 @@ void add_mass_ratios(std::vector<HardCase>& cases) {
                     gravity(kDown)),
               2e-3, 1);
   for (const double mass : {1e-12, 1e-6, 1e6, 1e12}) {
-    // From 1e6 kg on the beam of 1 kg, bent by its tip, holds nothing back: 0.1 m/s^2.
+    // From 1e6 kg on, the bending of the beam of 1 kg does not matter: the tip accelerates by 0.1 m/s^2.
     HardCase& hard = group.add(
         fmt::format("beam of 1 kg, tip body of {:g} kg pushed", mass),
         scene(joint("clamp", "fixed", "world", "beam") + beam("beam", {1, 0, 0}, rod(1e5, 1, 1), 8) +
@@ -65,7 +65,7 @@ void add_mass_ratios(std::vector<HardCase>& cases) {
   group.add("chain of masses 1e-6 and 1 kg in turn falls", scene(chain, gravity(kDown)), 1e-3, 0.5);
 }
 
-/// A body in two rings without mass, about z, y and z.
+/// A body in two massless rings, which turn about z, y and z.
 void add_gimbals(HardGroup& group) {
   const auto gimbal = [](double nutation, const std::string& rates) {
     return scene(hinge("first", "world", "outer", Vector3::Zero(), {0, 0, 1}) + massless("outer") +
@@ -121,7 +121,8 @@ void add_massless(std::vector<HardCase>& cases) {
   add_gimbals(group);
 }
 
-/// A four-bar linkage in the plane y = 0 of rigid links on continuous joints, cut between coupler and rocker.
+/// A four-bar linkage in the plane y = 0 with rigid links on continuous joints; the loop joint is between coupler and
+/// rocker.
 std::string four_bar(const Vector3& crank, const Vector3& coupler, const Vector3& foot, const Vector3& rocker,
                      const std::string& simulation) {
   const auto link = [](const std::string& name, const Vector3& to) { return body(name, 1, 0.05, to / 2); };
@@ -146,10 +147,10 @@ std::string slider_crank(const std::string& simulation, bool has_flexible_rod) {
 
 void add_dead_points(std::vector<HardCase>& cases) {
   HardGroup group(cases, "dead point");
-  const std::string turning = "2*_pi*10*t*t/(0.1 + t)";  // to 10 turns/s
+  const std::string turning = "2*_pi*10*t*t/(0.1 + t)";  // up to 10 turns/s
   group.add_unsound("parallelogram started flat", four_bar({1, 0, 0}, {2, 0, 0}, {2, 0, 0}, {1, 0, 0}, gravity(kDown)),
                     2e-3, 0.5);
-  // Crank and coupler in one line: the rocker turns back, the crank may turn on.
+  // Crank and coupler are in line: here the rocker reverses, while the crank may go on.
   const Vector3 crank(0.2, 0, 0), coupler(0.6, 0, 0), foot(0.6, 0, -0.4), rocker(0.2, 0, 0.4);
   group.add("four-bar started where its rocker turns back", four_bar(crank, coupler, foot, rocker, gravity(kDown)),
             2e-3, 1);
@@ -174,7 +175,7 @@ void add_dead_points(std::vector<HardCase>& cases) {
 void add_loops(std::vector<HardCase>& cases) {
   HardGroup group(cases, "loop");
   const auto bar = [](const std::string& name, const Vector3& to) { return body(name, 1, 0.05, to / 2); };
-  // Every rocker beyond the second is held twice.
+  // Each rocker beyond the second makes the loop overconstrained.
   const auto parallelogram = [&](int rockers) {
     std::string links = hinge("foot0", "world", "rocker0", Vector3::Zero()) + bar("rocker0", {0, 0, 1}) +
                         hinge("head0", "rocker0", "coupler", {0, 0, 1}) + bar("coupler", {2, 0, 0});
@@ -225,7 +226,7 @@ void add_loops(std::vector<HardCase>& cases) {
                     2e-3, 0.5);
 }
 
-/// A pendulum whose hinge "hinge" is so far from the world's origin [m].
+/// A pendulum whose joint "hinge" has this distance from the world's origin [m].
 std::string pendulum(double distance, const std::string& link, const std::string& simulation = "") {
   return scene(hinge("hinge", "world", "arm", distance * Vector3(0.6, 0, 0.8)) + link, gravity(kDown) + simulation);
 }

@@ -12,7 +12,8 @@ namespace {
 
 using namespace urdf;
 
-/// Position of what is brought to a rate within `ramp` seconds, its rate and acceleration continuous.
+/// Position over time with a smooth start: after `ramp` seconds the rate is constant. Rate and acceleration are
+/// continuous.
 std::string spun_up(double rate, double ramp) {
   return fmt::format("t < {1} ? {0}/2*(t - {1}/_pi*sin(_pi*t/{1})) : {0}*(t - {1}/2)", rate, ramp);
 }
@@ -74,7 +75,7 @@ void add_free_turns(HardGroup& group) {
   }
 }
 
-/// A joint is brought to a rate within half a second; what is published must be that rate.
+/// A joint is brought to a constant rate within half a second; the published velocity must be this rate.
 void add_driven_turns(HardGroup& group) {
   const auto drive = [&](const std::string& what, const std::string& links, const std::string& simulation,
                          const std::string& driven, double angle) {
@@ -104,7 +105,7 @@ void add_spins(std::vector<HardCase>& cases) {
   add_driven_turns(group);
 }
 
-/// Five pieces, each thinner than the one before; the handle is swung there and back.
+/// A whip of five pieces, each thinner than the one before; its handle swings to and fro.
 std::string tapered_whip(int elements, const std::string& damping = "") {
   std::string links = joint("handle", "continuous", "world", "piece0", Vector3::Zero(), axis({0, 1, 0}));
   const double radii[] = {0.01, 0.006, 0.004, 0.002, 0.001};
@@ -117,7 +118,7 @@ std::string tapered_whip(int elements, const std::string& damping = "") {
   return scene(links, motion("handle", "t < 0.3 ? 1 - cos(2*_pi*t/0.3) : 0"));
 }
 
-/// A thin beam that a heavy ball stretches and a force in its middle whips.
+/// A thin beam that is stretched by a heavy ball and whipped by a force at its middle.
 std::string stretched_whip(const std::string& pull) {
   return scene(joint("root", "floating", "world", "beam", Vector3::Zero(), "<release kind=\"spherical\"/>") +
                    beam("beam", {1, 0, 0},
@@ -131,7 +132,7 @@ std::string stretched_whip(const std::string& pull) {
 
 void add_whips(std::vector<HardCase>& cases) {
   HardGroup group(cases, "whip");
-  // Four elements a piece are far too few: the last ones are wound up by more than two turns each.
+  // Four elements per piece are far too few: the last elements are wound up by more than two turns each.
   const std::string damping = "<damping stiffness_proportional=\"1e-3\"/>";
   for (const double step : {2e-3, 5e-4})
     group.add_unsound(fmt::format("tapered, four elements a piece, steps of {:g} s", step), tapered_whip(4), step, 0.6);
@@ -166,7 +167,7 @@ void add_whips(std::vector<HardCase>& cases) {
         step, 15);
 }
 
-/// Two hinged beams that lean against each other, 0.05 m high over 2 m, pushed down at the apex.
+/// Two hinged beams that lean against each other, 0.05 m high over a span of 2 m, pushed down at the apex.
 std::string shallow_truss(double force) {
   const std::string about_y = axis({0, 1, 0});
   return scene(joint("left_foot", "continuous", "world", "left", Vector3::Zero(), about_y) +
@@ -176,7 +177,7 @@ std::string shallow_truss(double force) {
                load("left", {1, 0, 0.05}, {0, 0, -force}, "min(t, 1)") + probe("left", {1, 0, 0.05}));
 }
 
-/// An arc of a circle of 2.6 m, 2 m long, clamped at both ends, pushed down beside its crown.
+/// An arc of a circle with radius 2.6 m and length 2 m, clamped at both ends, pushed down beside its crown.
 std::string shallow_arch(double force) {
   return scene(joint("foot", "fixed", "world", "arch") +
                    beam_along("arch", "<arc to=\"2 0 0\" center=\"1 0 -2.4\"/>", rod(1e5, 10, 1), 8) +
@@ -184,7 +185,7 @@ std::string shallow_arch(double force) {
                load("arch", {1, 0, 0.2}, {0, 0.001 * force, -force}, "min(t, 1)"));
 }
 
-/// A strip on edge, pushed down at its tip by so many times what makes it buckle sideways.
+/// A strip on edge, pushed down at its tip by `ratio` times the load for lateral buckling.
 std::string strip_on_edge(double ratio) {
   constexpr double kStiff = 1e4, kSoft = 1, kTorsion = 1;
   const double critical = 4.013 * std::sqrt(kSoft * kTorsion);  // Prandtl 1899, for a tall strip

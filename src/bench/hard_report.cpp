@@ -1,4 +1,4 @@
-// The runs of hard cases as text.
+// Writes the results of hard cases as text.
 #include <algorithm>
 #include <map>
 
@@ -66,12 +66,12 @@ long count_rows(const HardReport& report, const Predicate& predicate) {
   return std::count_if(report.rows.begin(), report.rows.end(), predicate);
 }
 
-/// A number, a dash where there is none.
+/// A number, or a dash for NaN.
 std::string number(const char* format, double value) {
   return std::isnan(value) ? "–" : fmt::vformat(format, fmt::format_args(fmt::make_format_args(value)));
 }
 
-/// One scheme against all cases, and against the first scheme.
+/// A row that sums up the results of one scheme, also relative to the first scheme.
 std::string total_row(const HardReport& report, std::size_t s) {
   const auto of = [&](Verdict wanted) {
     return count_rows(report, [&](const HardRow& row) { return verdict(row.hard, row.outcomes[s]) == wanted; });
@@ -93,7 +93,7 @@ std::string total_row(const HardReport& report, std::size_t s) {
     if (!is_right(row, s)) continue;
     if (row.hard.load_steps == 0) iterations.push_back(outcome.iterations_per_step());
     energy_defect = std::max(energy_defect, outcome.energy_defect);
-    momentum_defect = std::fmax(momentum_defect, outcome.momentum_defect);  // some have none
+    momentum_defect = std::fmax(momentum_defect, outcome.momentum_defect);  // NaN for some cases
   }
   return row({report.options.schemes[s], std::to_string(of(Verdict::Right)), std::to_string(of(Verdict::Warned)),
               std::to_string(of(Verdict::Wrong)), std::to_string(of(Verdict::Failed)),
@@ -117,7 +117,7 @@ std::string total_table(const HardReport& report) {
   return text;
 }
 
-/// How far a run came, and why not further.
+/// How far a run came, and why it went no further.
 std::string ending(const HardCase& hard, const HardOutcome& outcome) {
   const std::string reason = outcome.reason.data();
   if (outcome.end == HardOutcome::End::Failed && hard.load_steps == 0)
@@ -125,7 +125,7 @@ std::string ending(const HardCase& hard, const HardOutcome& outcome) {
   return fmt::format("{}: {}", to_string(outcome.end), reason);
 }
 
-/// Iterations of a step where all is well; else what is not.
+/// The iterations per step of a correct run; for other runs, what is wrong.
 std::string cell(const HardCase& hard, const HardOutcome& outcome) {
   switch (verdict(hard, outcome)) {
     case Verdict::Right:
@@ -166,7 +166,7 @@ std::string group_table(const HardReport& report, const std::string& group) {
   return text;
 }
 
-/// A finding may hold what Markdown takes for the end of a cell or of a line.
+/// Replaces characters that would end a cell or a line in Markdown.
 std::string in_one_cell(std::string text) {
   std::replace(text.begin(), text.end(), '|', '/');
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -181,7 +181,7 @@ std::string trouble_table(const HardReport& report) {
     if (v == Verdict::Right || v == Verdict::Diagnosed || v == Verdict::LeftOut) continue;
     const std::string what = v == Verdict::Wrong       ? flaw(r.hard, outcome)
                              : v == Verdict::Warned    ? flaw(r.hard, outcome) + "; warned: " + outcome.warning.data()
-                             : v == Verdict::Unnoticed ? "completed without a word"
+                             : v == Verdict::Unnoticed ? "completed without a warning"
                                                        : ending(r.hard, outcome);
     text += row({r.hard.group + ": " + r.hard.name, in_one_cell(what),
                  fmt::format("{:.1f}, {}", outcome.iterations_per_step(), outcome.most_iterations),
@@ -191,7 +191,7 @@ std::string trouble_table(const HardReport& report) {
   return text;
 }
 
-/// Right runs of the first scheme that took more than kManyIterations a step.
+/// Correct runs of the first scheme with more than kManyIterations per step.
 std::string dear_table(const HardReport& report) {
   std::string text = head({"case", "iterations: mean, largest", "steps", "halvings"});
   for (const HardRow& r : report.rows) {
@@ -222,35 +222,30 @@ std::vector<std::string> groups(const HardReport& report) {
 std::string to_markdown(const HardReport& report, const std::string& picture) {
   const std::string& first = report.options.schemes.front();
   std::string text = fmt::format(
-      "# Hard cases\n\nWritten by `flexarm bench hard`{}. {} scenes at which a simulator may break, with the options "
-      "that "
-      "a scene has by default. Each run is a process of its own: {} s of processor time, {:.1f} GiB.\n\n"
-      "A run is *right* if it completes, its end is where a closed form or a finer run says, it stays within the "
-      "bounds "
-      "of its case, its energy account gains less than 5 % of the motion's largest energy and loses no more than all "
-      "of it (what touches gains no more than 1e-4 of it, with what is dissipated and without), and the momenta of a "
-      "free motion change by less than 5 %. Schemes without contact leave out what touches. A *warned* run is wrong, "
-      "too, but "
-      "ends with a warning that names what was out of bounds: rotations per step, strains, the energy account. "
-      "*Unsound* scenes (names in italics) cannot be "
-      "built, have no definite motion or far too coarse a mesh; they are to be refused, or to end with a reason that "
-      "says more than that the iteration did not converge.\n\n",
+      "# Hard cases\n\nWritten by `flexarm bench hard`{}. {} scenes at which a simulator may fail, with the default"
+      " options of a scene. Each run is a process of its own, limited to {} s of processor time and {:.1f} GiB.\n\n"
+      "A run is *right* if it completes, its end agrees with a closed form or a finer run, it stays within the "
+      "bounds of its case, its energy account gains less than 5 % of the motion's largest energy and loses at most "
+      "all of it, and the momenta of a free motion change by less than 5 %. With contact, the energy account must "
+      "gain at most 1e-4 of the largest energy, with and without the dissipated energy. Schemes without contact "
+      "skip these cases. A *warned* run is wrong, too, but ends with a warning that names the exceeded bound: "
+      "rotations per step, strains, the energy account. *Unsound* scenes (names in italics) cannot be built, have "
+      "no definite motion or far too coarse a mesh; they must be refused, or end with a reason that says more than "
+      "that the iteration did not converge.\n\n",
       report.options.quick ? " `--quick`: first steps only" : "", report.rows.size(), report.options.limits.seconds,
       static_cast<double>(report.options.limits.bytes) / (1 << 30));
   text += total_table(report);
   text +=
-      "\nOver the right runs in time: the median of the iterations per step, the largest change of the energy account "
-      "beside "
-      "the largest energy, and of the momenta of free motions beside their own size. Seconds: of the processor, all "
-      "runs "
-      "together.\n";
+      "\nOver the right runs in time: the median of the iterations per step, the largest change of the energy "
+      "account relative to the largest energy, and that of the momenta of free motions relative to their own size. "
+      "Seconds: processor time of all runs together.\n";
   if (!picture.empty()) text += fmt::format("\n![Cases and schemes]({})\n", picture);
   text += fmt::format("\n## Not right with `{}`\n\n{}", first, trouble_table(report));
   text += fmt::format("\n## Right with `{}`, but with more than {} iterations a step\n\n{}", first, kManyIterations,
                       dear_table(report));
   text +=
-      "\nBelow: Newton iterations per step of right runs; how far the others came. Halvings, defects, errors, times "
-      "and reasons of every run are in [hard.csv](hard.csv).\n";
+      "\nBelow: Newton iterations per step of right runs; for the others, the part of the motion that they "
+      "completed. Halvings, defects, errors, times and reasons of every run are in [hard.csv](hard.csv).\n";
   for (const std::string& group : groups(report)) text += group_table(report, group);
   return text;
 }

@@ -13,12 +13,13 @@ namespace flexarm::bench {
 namespace {
 
 constexpr int kQuickSteps = 5;
-/// Of energy from nowhere, and the largest loss by dissipation of the scheme's own, beside the largest energy of the
-/// motion; of the momenta of a free motion, beside themselves.
+/// Limits for created energy and for energy lost by the scheme's dissipation, relative to the largest energy of the
+/// motion; and for changes of the momenta in a free motion, relative to these momenta.
 constexpr double kLargestGain = 0.05, kLargestLoss = 1, kLargestMomentumDefect = 0.05;
-/// The same of what touches: round-off of halved steps, and what Newton's method leaves beside a tiny body's depth.
+/// Limit for created energy in contacts: round-off of halved steps, and errors of Newton's method relative to a tiny
+/// body's depth.
 constexpr double kLargestContactGain = 1e-4;
-/// What a scheme that has none says.
+/// What a scheme without contacts says.
 constexpr const char* kNoContact = "has no <contact>";
 
 void write(HardOutcome::Text& text, const std::string& from) {
@@ -45,7 +46,7 @@ double total_mass(const Model& model) {
   return mass;
 }
 
-/// Keeps the largest defects of what a motion should conserve. A value that is not a number stays.
+/// Keeps the largest changes of quantities that a motion should conserve. If one is NaN, it stays NaN.
 class Accounts {
  public:
   Accounts(const Simulation& simulation, const HardCase& hard)
@@ -100,7 +101,7 @@ void note_failure(HardOutcome& outcome, const StepResult& result) {
   note(outcome, HardOutcome::End::Failed, to_string(result.reason), result.reason != StepResult::Reason::NoConvergence);
 }
 
-/// What is done in the child.
+/// The work of the child process.
 class Play {
  public:
   Play(const HardCase& hard, const HardOptions& options, HardOutcome& outcome)
@@ -189,7 +190,7 @@ Vector3 observed(const HardOutcome& outcome) {
   return Eigen::Map<const Vector3>(outcome.observed.data());
 }
 
-/// Infinite where what is observed is not a number.
+/// Relative error of the observed quantity; infinite if the latter is NaN.
 double error_of(const HardOutcome& outcome, const Vector3& expected, double scale) {
   const double error = (observed(outcome) - expected).norm() / scale;
   return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;

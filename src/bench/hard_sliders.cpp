@@ -1,4 +1,4 @@
-// Hard cases of sliders: many borders, ends at speed, lines that are left.
+// Hard cases of sliders: many borders between elements, fast arrival at ends, sliders that leave their line.
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +35,7 @@ void add_crossings(HardGroup& group) {
               coordinate_at("ride", kEnd, kLength, 1e-3));
   }
   for (const double speed : {1.0, 3.0, 10.0, 50.0, 200.0}) {
-    const double until = 9 / speed;  // the sag hurries it on
+    const double until = 9 / speed;  // gravity accelerates the rider where the rail sags
     group.add(fmt::format("10 kg over 90 borders at {:g} m/s, under gravity", speed),
               rail(100, slide(kStart), gravity({0, 0, -9.81}) + initial("ride", kStart, speed), 10), until / 200, until,
               coordinate_by_run("ride", "", until / 800, kLength, 0.02));
@@ -61,7 +61,7 @@ void add_ends(HardGroup& group) {
                            return (position_of(s, "ride") - kLength) / (0.1 * element);
                          }};
     }
-  // 9.95 m at 3 m/s, and back with what the restitution leaves until 4 s.
+  // 9.95 m at 3 m/s, and back with the remaining velocity until 4 s.
   group.add("over 40 elements at 3 m/s to the stop", rail(40, slide(0.05), initial("ride", 0.05, 3)), 5e-3, 4,
             coordinate_at("ride", kLength - 0.3 * (3 * 4 - 9.95), kLength, 0.01));
   HardCase& pressed =

@@ -20,7 +20,7 @@ std::string cantilever(double ea, int elements, const std::string& simulation) {
                simulation + probe("beam", kTip));
 }
 
-/// Height of the tip of a clamped column of length 1 that bears `ratio` > 1 times its Euler load: Euler's elastica.
+/// Height of the tip of a clamped column of length 1 under `ratio` > 1 times its Euler load: Euler's elastica.
 double height_of_elastica(double ratio) {
   double low = 0, high = 1;  // modulus k of K(k) = pi/2 sqrt(ratio)
   for (int i = 0; i < 60; ++i) {
@@ -60,7 +60,7 @@ void add_bent_far(HardGroup& group) {
     group.add_static(fmt::format("rolled up {} times", turns),
                      cantilever(1e5, elements, moment("beam", kTip, {0, 2 * kPi * turns, 0})), 20 * turns,
                      probe_at(Vector3::Zero(), 1, 0.02));
-  // One and a half turns: the tip is across a circle from the clamp.
+  // One and a half turns: tip and clamp are at opposite points of a circle.
   group.add_static("two elements, each bent through 1.5 pi", cantilever(1e5, 2, moment("beam", kTip, {0, 3 * kPi, 0})),
                    40, probe_at({0, 0, -2 / (3 * kPi)}, 1, 0.1));
   for (const double force : {1e3, 1e5})

@@ -29,25 +29,25 @@ struct BenchArguments {
   std::string output = "docs/reports", scenes;
   std::string only, references;  ///< of the accuracy report
   std::vector<std::string> problems;
-  std::vector<std::string> cases, groups;  ///< of the hard ones
-  std::vector<int> random_arms;            ///< of the accuracy report: the first one, and how many
+  std::vector<std::string> cases, groups;  ///< of the hard cases
+  std::vector<int> random_arms;            ///< for the accuracy report: the first one, and their number
   HardOptions hard;
   bool print_only = false;
   bool quick = false;
 };
 
-/// The file of a report, in a folder that is made. Minutes later would be a bad time to find out that it cannot be
-/// written; what is there stays until then.
+/// The file of a report; makes its folder. Checks at once that it can be written, not after minutes of measurement. An
+/// existing file stays until then.
 fs::path report_file(const BenchArguments& arguments, const std::string& name) {
   std::error_code error;
-  fs::create_directories(arguments.output, error);  // what is wrong is found below
+  fs::create_directories(arguments.output, error);  // errors are found below
   const fs::path file = fs::path(arguments.output) / (name + ".md");
   cli::require_writable("--output", file.string());
   return file;
 }
 
-/// A bar that is told what is measured after each run, from where a signal ends the measurements: reports are written
-/// whole or not at all.
+/// A progress bar, which is called after each run. If a signal has come, it ends the measurements by an exception, so
+/// that reports are written completely or not at all.
 class Progress {
  public:
   Progress() { cli::catch_interruptions(); }
@@ -63,7 +63,7 @@ class Progress {
   cli::ProgressBar bar_{0, 1, true};
 };
 
-/// The folder of scenes that was named, or flexarm's own.
+/// The folder of scenes that the user gave, or flexarm's own.
 fs::path scene_folder(const BenchArguments& arguments, const std::string& own) {
   const std::optional<std::string> scenes =
       arguments.scenes.empty() ? cli::own_scenes(own) : std::optional<std::string>(arguments.scenes);
@@ -71,8 +71,8 @@ fs::path scene_folder(const BenchArguments& arguments, const std::string& own) {
   return *scenes;
 }
 
-/// Writes report NAME.md, its data, and the picture that plot_NAME.py draws of them. measure(progress) calls
-/// progress(part done, what is measured).
+/// Writes the report NAME.md, its data, and the picture that plot_NAME.py makes from the data. measure(progress) calls
+/// progress(completed fraction, what is measured).
 template <class Measure, class ToData>
 int write_report(const BenchArguments& arguments, const std::string& name, const std::string& data_name,
                  const Measure& measure, const ToData& to_data) {
@@ -149,7 +149,7 @@ int report_speed(const BenchArguments& arguments) {
       runs_to_csv);
 }
 
-/// Of the accuracy report: the named folder, or one that is written for this time alone.
+/// The references of the accuracy report: the folder that the user gave, or a temporary one that is filled now.
 class References {
  public:
   References(const BenchArguments& arguments, const std::string& only) : folder_(arguments.references) {
@@ -157,7 +157,7 @@ class References {
     folder_ = (fs::temp_directory_path() / fmt::format("flexarm_references_{}", getpid())).string();
     is_own_ = true;
     if (!cli::run_script("outside_references", {"--output", folder_, "--only", only}))
-      throw std::runtime_error("the references were not made: see above; they need python3-scipy");
+      throw std::runtime_error("the references could not be made (see above); they need python3-scipy");
   }
   ~References() {
     std::error_code error;
@@ -173,7 +173,7 @@ class References {
   bool is_own_ = false;
 };
 
-/// That shows in short that references are read.
+/// A reference for quick runs, which show that references can be read.
 constexpr const char* kQuickReference = "jump at sqrt(0.1)";
 
 int report_accuracy(const BenchArguments& arguments) {
@@ -206,7 +206,7 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether one of these is a part of the name; or there are none.
+/// Whether the name contains one of the parts, or there are no parts.
 bool is_meant(const std::vector<std::string>& parts, const std::string& name) {
   return parts.empty() || std::any_of(parts.begin(), parts.end(),
                                       [&](const std::string& part) { return name.find(part) != std::string::npos; });
@@ -220,7 +220,7 @@ std::vector<HardCase> chosen_cases(const BenchArguments& arguments) {
   return chosen;
 }
 
-/// Each as a file that runs as the case does, but for the end time.
+/// Prints each case as a scene file that runs like the case, apart from the end time.
 int print_scenes(const std::vector<HardCase>& cases) {
   for (const HardCase& hard : cases) {
     std::string text = hard.scene;
@@ -273,7 +273,7 @@ void add_scenes(cli::Command& command, BenchArguments& arguments, const std::str
 void add_properties(cli::CommandLine& line, BenchArguments& arguments) {
   cli::Command& command = line.command("properties", "Properties of all time integration schemes, as a report");
   add_output(command, arguments);
-  command.flag("--quick", arguments.quick, "short runs, to see that all of it works");
+  command.flag("--quick", arguments.quick, "short runs, as a test of the command");
   command.runs([&arguments] { return report_properties(arguments); });
 }
 
@@ -281,7 +281,7 @@ void add_thesis(cli::CommandLine& line, BenchArguments& arguments) {
   cli::Command& command = line.command("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
   add_output(command, arguments);
   add_scenes(command, arguments, "those that come with flexarm");
-  command.flag("--quick", arguments.quick, "short runs, to see that all of it works");
+  command.flag("--quick", arguments.quick, "short runs, as a test of the command");
   command.runs([&arguments] { return report_thesis(arguments); });
 }
 
@@ -291,15 +291,15 @@ void add_speed(cli::CommandLine& line, BenchArguments& arguments) {
       .choices(problem_names());
   add_output(command, arguments);
   add_scenes(command, arguments, "config, which comes with flexarm");
-  command.flag("--quick", arguments.quick, "short runs, few of them, to see that all of it works");
+  command.flag("--quick", arguments.quick, "a few short runs, as a test of the command");
   command.runs([&arguments] { return report_speed(arguments); });
 }
 
 void add_accuracy(cli::CommandLine& line, BenchArguments& arguments) {
-  cli::Command& command = line.command("accuracy", "True errors over those asked for, and costs, as a report");
+  cli::Command& command = line.command("accuracy", "True errors relative to requested ones, and costs, as a report");
   add_output(command, arguments);
   add_scenes(command, arguments, "config, which comes with flexarm");
-  command.option("--only", arguments.only, "only scenes with this in \"GROUP: NAME\"");
+  command.option("--only", arguments.only, "only scenes with this text in \"GROUP: NAME\"");
   command
       .option("--references", arguments.references,
               "folder that scripts/outside_references has written (default: one is made, used and removed)")
@@ -310,40 +310,39 @@ void add_accuracy(cli::CommandLine& line, BenchArguments& arguments) {
       .takes(2)
       .shown_as("FIRST COUNT")
       .check(cli::whole_number_between(0, 1000000));
-  command.flag("--quick", arguments.quick, "three short scenes, to see that all of it works");
+  command.flag("--quick", arguments.quick, "three short scenes, as a test of the command");
   command.runs([&arguments] { return report_accuracy(arguments); });
 }
 
 void add_hard(cli::CommandLine& line, BenchArguments& arguments) {
   cli::Command& command = line.command("hard", "Scenes at which a simulator may break, as a report");
-  command.option("--case", arguments.cases, "only those with this in their names; may be given more than once");
+  command.option("--case", arguments.cases, "only cases with this text in their names; may be given more than once");
   command.option("--group", arguments.groups, "only this one; may be given more than once (default: all)")
       .choices(group_names());
   command
-      .option("--scheme", arguments.hard.schemes,
-              "may be given more than once; the first is what others are compared with")
+      .option("--scheme", arguments.hard.schemes, "may be given more than once; the others are compared with the first")
       .shows_default()
       .choices(scheme_choice());
-  command.option("--seconds", arguments.hard.limits.seconds, "of the processor, for each run")
+  command.option("--seconds", arguments.hard.limits.seconds, "limit of processor time for each run [s]")
       .shows_default()
       .check(cli::check_positive);
   add_output(command, arguments);
   command.flag("--print", arguments.print_only, "print the scenes, run nothing");
-  command.flag("--quick", arguments.quick, "five steps of each, to see that all of it works");
+  command.flag("--quick", arguments.quick, "five steps of each, as a test of the command");
   command.runs([&arguments] { return report_hard(arguments); });
 }
 
 void add_scaling(cli::CommandLine& line, BenchArguments& arguments) {
   cli::Command& command = line.command("scaling", "Time and memory over the size of a mechanism, as a report");
   add_output(command, arguments);
-  command.flag("--quick", arguments.quick, "small mechanisms, to see that all of it works");
+  command.flag("--quick", arguments.quick, "small mechanisms, as a test of the command");
   command.runs([&arguments] { return report_scaling(arguments); });
 }
 
 }  // namespace
 }  // namespace flexarm::bench
 
-/// What `flexarm bench` becomes, with the same arguments; its name in messages and help is that of the command.
+/// The program that `flexarm bench` becomes, with the same arguments. In messages and help it uses that command's name.
 int main(int argc, char** argv) {
   using namespace flexarm::bench;
   flexarm::cli::CommandLine line("flexarm bench", "Measures the simulator itself");

@@ -1,4 +1,4 @@
-// The report as text.
+// Writes the properties report as text.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,9 +9,9 @@
 namespace flexarm::bench {
 namespace {
 
-/// Drifts below this are those of a conserved quantity: round-off and Newton's method over 2000 steps.
+/// Smaller drifts count as conservation: they are round-off and errors of Newton's method over 2000 steps.
 constexpr double kConserved = 1e-9;
-/// Kinematic identities hold to round-off.
+/// Limit for kinematic identities, which hold up to round-off.
 constexpr double kExact = 1e-11;
 constexpr double kOrderTolerance = 0.2;
 
@@ -21,7 +21,7 @@ std::string number(double value) {
 std::string percent(double part) {
   return fmt::format("{:.2g} %", std::abs(part) < kConserved ? 0.0 : 100 * part);
 }
-/// Bold: claimed; with a cross: and not kept.
+/// Text of a cell; bold if the scheme claims the property, with a cross if it then does not have it.
 std::string claim(const std::string& text, bool is_claimed, bool is_kept) {
   if (!is_claimed) return text;
   return "**" + text + "**" + (is_kept ? "" : " ✗");
@@ -31,7 +31,7 @@ std::string failed(const Failure& failure, bool is_claimed) {
                false);
 }
 
-/// A quantity that is zero where a scheme claims it.
+/// A cell for a quantity that is zero if the scheme has a claimed property.
 template <class Value>
 std::string zero_cell(const Measured<Value>& measured, double quantity, bool is_claimed, double limit) {
   if (measured.failure) return failed(*measured.failure, is_claimed);
@@ -59,7 +59,7 @@ std::string drift_cell(const Properties& p, double InvariantDrift::*quantity, bo
 
 std::vector<std::string> property_cells(const Properties& p, double newmark_seconds) {
   const Scheme& scheme = p.variant.scheme;
-  // Numerical dissipation promises that the energy never grows.
+  // Schemes with numerical dissipation promise that the energy never grows.
   const bool never_grows = scheme.conserves_energy || scheme.dissipation.any();
   const bool ignores_spin = p.variant.claims_spin_independence();
   const SpinDependence& spin = p.spin_dependence.value;
@@ -93,7 +93,7 @@ std::string property_table(const Report& report) {
   return text;
 }
 
-/// Muñoz 2004, table 5.3, measured.
+/// Measured counterpart of Muñoz 2004, table 5.3.
 std::string path_table() {
   const auto cell = [](double difference) {
     return (difference < kExact ? "no (" : "**yes** (") + number(difference) + ")";

@@ -1,5 +1,5 @@
 #pragma once
-/// Tables in Markdown.
+/// Makes tables in Markdown.
 
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 namespace flexarm::bench {
 
 std::string row(const std::vector<std::string>& cells);
-/// Names of the columns and the rule below; the first column to the left, numbers to the right.
+/// The names of the columns and the line below them. The first column is left-aligned, the others are right-aligned.
 std::string head(const std::vector<std::string>& columns);
 
 }  // namespace flexarm::bench

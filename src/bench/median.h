@@ -1,5 +1,5 @@
 #pragma once
-/// Of measurements.
+/// The median of measurements.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace flexarm::bench {
 
-/// The mean of both middle ones where they are even in number; NaN: there are none.
+/// For an even number of values, the mean of the two middle ones. NaN if there are no values.
 inline double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());

@@ -26,9 +26,9 @@ std::vector<PeerRun> mujoco_runs(PeerProblem, const std::vector<double>&, bool, 
 namespace flexarm::bench {
 namespace {
 
-/// Of the hub, over the beam's inertia about it.
+/// Inertia of the hub, relative to the beam's inertia about it.
 constexpr double kHubRatio = 1e6;
-/// Angle between segments with which a motion counts as blown up [rad].
+/// With a larger angle between segments, a motion counts as blown up [rad].
 constexpr double kLargestBend = kPi / 2;
 
 struct PlaneProblem {
@@ -37,7 +37,7 @@ struct PlaneProblem {
   double mass;                            ///< [kg/m]
   double polar_inertia, bending_inertia;  ///< [kg m]
   double bending;                         ///< EI [N m^2]
-  const char *axis, *gravity;             ///< of all hinges; MJCF
+  const char *axis, *gravity;             ///< of all hinges, and of the world; MJCF
   bool is_driven;                         ///< the first hinge is the hub
 };
 
@@ -46,7 +46,7 @@ PlaneProblem plane_problem(PeerProblem problem) {
   return {2, 1, 1, 2e-4, 1e-4, 20, "0 1 0", "0 0 -9.81", false};
 }
 
-/// Inertia about the hub [kg m^2].
+/// Inertia of the hub about its axis [kg m^2].
 double hub_inertia(const PlaneProblem& problem) {
   return kHubRatio * problem.mass * std::pow(problem.length, 3) / 3;
 }
@@ -68,10 +68,10 @@ struct Variant {
   int segments;
   const char* integrator;
   double step;
-  double damping;  ///< over stiffness [s]
+  double damping;  ///< damping divided by stiffness [s]
 };
 
-/// A rigid segment from its hinge on, without the end of its element.
+/// MJCF of a rigid segment that begins at a hinge, without the end tag.
 std::string body(const PlaneProblem& problem, double at, double length, const std::string& hinge) {
   const double mass = problem.mass * length;
   const double across = mass * length * length / 12 + problem.bending_inertia * length;
@@ -134,7 +134,8 @@ class Chain {
 
   Vector3 tip() {
     if (problem_.is_driven) data_->qpos[0] = hub_angle(data_->time);
-    mj_kinematics(model_.get(), data_.get());  // a step ends with new coordinates, but poses of its beginning
+    mj_kinematics(model_.get(),
+                  data_.get());  // after a step, coordinates are new, but poses are those of its beginning
     const int last = model_->nbody - 1;
     const mjtNum *origin = data_->xpos + 3 * last, *frame = data_->xmat + 9 * last;
     const double length = 0.5 * problem_.length / segments_;

@@ -1,4 +1,4 @@
-// Rigid mechanisms by MuJoCo, which reads the same file.
+// Runs rigid mechanisms in MuJoCo, which reads the same file.
 #include "bench/mujoco.h"
 
 #ifndef FLEXARM_HAS_MUJOCO
@@ -20,7 +20,7 @@ std::vector<PeerRun> mujoco_runs_of(const scene::SceneDescription&, const std::v
 namespace flexarm::bench {
 namespace {
 
-/// The first probe of a scene of rigid links and joints of one coordinate.
+/// The motion of the first probe, in a scene of rigid links and joints of one coordinate.
 class Mechanism {
  public:
   Mechanism(const scene::SceneDescription& scene, mjtIntegrator integrator, double step)
@@ -44,7 +44,8 @@ class Mechanism {
   bool is_sound() const { return !has_warned(data_.get()); }
 
   Vector3 tip() {
-    mj_kinematics(model_.get(), data_.get());  // a step ends with new coordinates, but poses of its beginning
+    mj_kinematics(model_.get(),
+                  data_.get());  // after a step, coordinates are new, but poses are those of its beginning
     const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor> > rotation(data_->xmat + 9 * link_);
     return Eigen::Map<const Vector3>(data_->xpos + 3 * link_) + rotation * at_;
   }

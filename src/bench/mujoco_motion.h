@@ -1,5 +1,5 @@
 #pragma once
-/// What all runs of MuJoCo share; only where flexarm is built with it.
+/// Code that all runs of MuJoCo share; only used if flexarm is built with MuJoCo.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ struct MujocoDeleter {
 using MujocoModel = std::unique_ptr<mjModel, MujocoDeleter>;
 using MujocoData = std::unique_ptr<mjData, MujocoDeleter>;
 
-/// @throws std::runtime_error if the file, on disk or in memory, is none.
+/// @throws std::runtime_error if the file, on disk or in memory, is not a model
 inline MujocoModel mujoco_model(const std::string& file, const mjVFS* memory = nullptr) {
   char error[1000] = "";
   MujocoModel model(mj_loadXML(file.c_str(), memory, error, sizeof error));
@@ -32,7 +32,7 @@ inline MujocoModel mujoco_model(const std::string& file, const mjVFS* memory = n
 }
 
 inline MujocoModel mujoco_model_of_text(const std::string& text) {
-  const auto files = std::make_unique<mjVFS>();  // of megabytes
+  const auto files = std::make_unique<mjVFS>();  // on the heap, since it has megabytes
   mj_defaultVFS(files.get());
   const int place = mj_makeEmptyFileVFS(files.get(), "text.xml", static_cast<int>(text.size()));
   if (place < 0) throw std::runtime_error("MuJoCo: no file in memory");
@@ -48,7 +48,7 @@ inline MujocoData mujoco_data(const mjModel* model) {
   return data;
 }
 
-/// MuJoCo's global callbacks while runs go on; no log file in the working directory.
+/// Restores MuJoCo's global callbacks after runs. Meanwhile MuJoCo writes no log file to the working folder.
 class MujocoCallbacks {
  public:
   MujocoCallbacks() : control_(mjcb_control), warning_(mju_user_warning) {
@@ -63,17 +63,17 @@ class MujocoCallbacks {
   void (*warning_)(const char*);
 };
 
-/// MuJoCo starts from the beginning where a number is not finite, and counts that as a warning.
+/// Whether a number was not finite. MuJoCo then restarts from the initial state, and counts a warning.
 inline bool has_warned(const mjData* data) {
   const auto warned = [&](int kind) { return data->warning[kind].number > 0; };
   return warned(mjWARN_BADQPOS) || warned(mjWARN_BADQVEL) || warned(mjWARN_BADQACC);
 }
 
-/// Moves `motion`, which has advance(steps), is_sound() and tip(), through the times and records its tip; `run` has
-/// been filled in as to what it is.
+/// Advances `motion`, which has advance(steps), is_sound() and tip(), and records its tip at the times. The other
+/// fields of `run` must already be set.
 template <class Motion>
 PeerRun recorded(Motion& motion, PeerRun run, const std::vector<double>& times) {
-  constexpr double kCheckInterval = 1e-2;  // simulated time after which the motion is looked at [s]
+  constexpr double kCheckInterval = 1e-2;  // simulated time between checks of the motion [s]
   const long stride = std::max(1L, std::lround(kCheckInterval / run.step));
   long done = 0;
   for (const double time : times) {

@@ -29,7 +29,7 @@ double distance(const History& a, const History& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// Largest distance of a probe from where it was first.
+/// Largest distance of a probe from its initial position.
 double amplitude(const History& history, std::size_t probes) {
   double largest = 0;
   for (std::size_t i = probes; i < history.size(); ++i)

@@ -1,5 +1,5 @@
 #pragma once
-/// Order of convergence in time.
+/// Measures the order of convergence in time.
 
 #include "bench/run.h"
 
@@ -10,8 +10,8 @@ struct OrderInTime {
   double error = 0;  ///< at the coarsest step, relative to the largest displacement
 };
 
-/// Probes' positions on a loaded 3D tree with joints (loaded_tree) with steps 20, 10, 5 ms, against the limit that
-/// Richardson's extrapolation gives from 2.5 and 1.25 ms with the order that the scheme claims.
+/// Compares the positions of probes on a loaded 3D tree with joints (loaded_tree), with steps of 20, 10 and 5 ms, with
+/// their limit. Richardson extrapolation gives this limit from 2.5 and 1.25 ms, with the order that the scheme claims.
 Measured<OrderInTime> order_in_time(const Variant& variant, bool quick);
 
 }  // namespace flexarm::bench

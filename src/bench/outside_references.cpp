@@ -19,7 +19,7 @@ using Cells = std::vector<std::string>;
   throw std::runtime_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// The cells of a line; a quoted one may contain commas.
+/// Splits a line into cells; a quoted cell may contain commas.
 Cells cells_of(const std::string& line) {
   Cells cells(1);
   bool is_quoted = false;
@@ -90,7 +90,7 @@ JudgedMotion read_motion(const std::string& file, double until, int intervals) {
   return motion;
 }
 
-/// The scene has the reference's points, where it has them.
+/// Checks that the reference's points start where those of the scene do.
 void require_start(const OutsideReference& reference, const std::string& file) {
   const Simulation simulation(reference.scene);
   const std::vector<Vector3> start = JudgedPoints(simulation).positions(simulation);

@@ -1,5 +1,5 @@
 #pragma once
-/// Motions of scenes that are not flexarm's, as scripts/outside_references writes them.
+/// Reads reference motions that do not come from flexarm, as scripts/outside_references writes them.
 
 #include <string>
 #include <vector>
@@ -14,19 +14,18 @@ struct OutsideReference {
   bool is_cornered = true;
   double until = 0;         ///< [s]
   int intervals = 0;        ///< of equal length, between the times of `motion`
-  double disagreement = 0;  ///< of two runs of the reference, relative to how far its points come
+  double disagreement = 0;  ///< difference between two runs of the reference, relative to the largest displacement
   scene::SceneDescription scene;
-  bool is_there = true;  ///< else finer runs have to judge, and there is no motion
+  bool is_there = true;  ///< whether `motion` exists; if not, finer runs are the reference
   JudgedMotion motion;
 };
 
-/// A reference whose two runs differ by more than this part of its way judges nothing.
+/// A reference whose two runs differ by more (relative to the largest displacement) is not used.
 constexpr double kLargestDisagreement = 1e-9;
 
-/// What `index.csv` of the folder lists, in its order; `only`: those with this in "GROUP: NAME".
-/// @throws std::runtime_error naming file and line for a table that cannot be read, times that are not equally spaced
-/// from 0 to the end, numbers that are not finite, runs that disagree, and points that do not start where those of the
-/// scene do.
+/// Reads all references that the folder's `index.csv` lists. `only`: those with this text in "GROUP: NAME".
+/// @throws std::runtime_error with file and line if a table cannot be read, times are not equally spaced from 0 to the
+///   end, numbers are not finite, runs disagree, or the points' initial positions are not those of the scene
 std::vector<OutsideReference> read_outside_references(const std::string& folder, const std::string& only = {});
 
 }  // namespace flexarm::bench

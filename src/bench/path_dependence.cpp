@@ -17,7 +17,7 @@ using NodeVectors = std::array<Vector3, kNodes>;
 using NodeRotations = std::array<Quaternion, kNodes>;
 using Points = std::array<InterpolatedRotation<double>, kPoints>;
 
-/// Where the nodes are at a part of the way, in [0, 1]; the way is not straight.
+/// Rotations of the nodes at the fraction `part`, in [0, 1], of a curved path.
 NodeRotations target(double part) {
   NodeRotations out;
   for (int i = 0; i < kNodes; ++i) {
@@ -27,7 +27,7 @@ NodeRotations target(double part) {
   return out;
 }
 
-/// Nodes and stiffness points of a straight element of length 2 that starts undeformed.
+/// Nodes and stiffness points of a straight element of length 2, initially undeformed.
 class Element {
  public:
   Element(Interpolation interpolation, RotationUpdate update) : interpolation_(interpolation), update_(update) {
@@ -43,7 +43,7 @@ class Element {
     begin_points_ = points_;
     increment_.fill(Vector3::Zero());
   }
-  /// One Newton iterate, which takes the nodes to the target.
+  /// Makes one Newton iterate that takes the nodes to the target.
   void iterate(const NodeRotations& target) {
     NodeVectors spin;
     for (int i = 0; i < kNodes; ++i) spin[i] = so3::log(target[i] * nodes_[i].conjugate());
@@ -91,7 +91,7 @@ class Element {
       case Interpolation::Iterative:
         points_[k] = from(spin, points_[k]);
         if (update_ == RotationUpdate::Spin) return;
-        // The curvature by (5.5)_2, the rotation from the sum of total rotation vectors.
+        // Curvature by (5.5)_2; rotation by the sum of total rotation vectors.
         Vector3 point_spin = Vector3::Zero();
         for (int i = 0; i < kNodes; ++i) point_spin += shape[i] * spin[i];
         point_total_[k] += so3::inverse_tangent(point_total_[k]) * point_spin;

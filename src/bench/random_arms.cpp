@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned kSeed = 2004;
 
-/// Numbers that do not depend on whose standard library this is.
+/// Random numbers that do not depend on the implementation of the standard library.
 class Numbers {
  public:
   explicit Numbers(int index) : engine_(kSeed + static_cast<unsigned>(index)) {}
@@ -22,7 +22,7 @@ class Numbers {
   std::mt19937 engine_;
 };
 
-/// An aluminium rod along x, as a beam or rigid.
+/// An aluminium rod along x, flexible or rigid.
 std::string link(Numbers& numbers, int i, double length, bool is_flexible, bool is_automatic) {
   const double radius = length * numbers.between(0.015, 0.04), mass = 2700 * kPi * radius * radius * length;
   if (is_flexible)

@@ -33,7 +33,7 @@ std::vector<DissipationPoint> decay_of(const Variant& variant, bool quick) {
 }  // namespace
 
 Report measure_properties(bool quick, const std::function<void(double)>& progress) {
-  // In units of what one row costs; roughly.
+  // Approximate costs, in units of one row.
   constexpr double kCostShare = 0.1, kHardShare = 1.2;
   const std::vector<Variant> all = variants(), defaults = default_variants();
   const std::vector<HardScene> hard = hard_scenes();

@@ -1,5 +1,5 @@
 #pragma once
-/// The properties report: all measurements of all schemes, as Markdown and as data for its picture.
+/// The properties report: measurements of all schemes, as Markdown, and as data for its plot.
 
 #include <functional>
 #include <string>
@@ -17,7 +17,7 @@
 
 namespace flexarm::bench {
 
-/// All that was measured of one scheme with its options.
+/// All measurements of one scheme with certain options.
 struct Properties {
   Variant variant;
   Measured<OrderInTime> order;
@@ -30,11 +30,11 @@ struct Properties {
   Measured<Cost> cost;
 };
 
-/// What was measured of the schemes with default options only.
+/// Measurements that are made for schemes with default options only.
 struct SchemeReport {
   std::string name;
-  std::vector<DissipationPoint> decay;  ///< over dissipation_frequencies()
-  std::vector<Robustness> robustness;   ///< over hard_scenes()
+  std::vector<DissipationPoint> decay;  ///< for each of dissipation_frequencies()
+  std::vector<Robustness> robustness;   ///< for each of hard_scenes()
 };
 
 struct Report {
@@ -43,12 +43,13 @@ struct Report {
   bool quick = false;
 };
 
-/// `progress(part)` is called with the part done, in [0, 1]. `quick`: short runs that show nothing but that they work.
+/// `progress(part)` is called with the completed fraction, in [0, 1]. `quick`: short runs as a test of the command
+/// only.
 Report measure_properties(bool quick, const std::function<void(double)>& progress);
 
-/// The tables. `picture`: file name of the picture next to them; empty if there is none.
+/// The tables. `picture`: file name of the plot in the same folder; empty: none.
 std::string to_markdown(const Report& report, const std::string& picture);
-/// Columns scheme, omega_h, spectral_radius.
+/// A CSV table with the columns scheme, omega_h, spectral_radius.
 std::string decay_to_csv(const Report& report);
 
 }  // namespace flexarm::bench

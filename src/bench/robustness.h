@@ -1,5 +1,5 @@
 #pragma once
-/// How schemes cope with hard scenes.
+/// Measures how schemes cope with hard scenes.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace flexarm::bench {
 
-/// A scene that is run with several steps: one run alone is chance where the motion is chaotic.
+/// A scene that is run with several steps, since the result of a single run is random if the motion is chaotic.
 struct HardScene {
   std::string name;
   scene::SceneDescription scene;
@@ -20,13 +20,13 @@ std::vector<HardScene> hard_scenes();
 
 struct Robustness {
   int runs = 0, completed = 0;
-  double time_reached = 0;   ///< mean over the runs, part of the end time
-  double halved = 0;         ///< part of all steps in which a sub-step had to be halved
+  double time_reached = 0;   ///< mean over the runs, relative to the end time
+  double halved = 0;         ///< fraction of the steps in which a sub-step was halved
   double iterations = 0;     ///< of Newton's method per step
   double energy_defect = 0;  ///< largest error of energy - work + dissipation, relative to the largest energy
 };
 
-/// With the simulator's usual tolerance and step control.
+/// Runs the scene with the simulator's default tolerance and step control.
 Robustness robustness(const Variant& variant, const HardScene& hard, bool quick);
 
 }  // namespace flexarm::bench

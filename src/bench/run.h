@@ -1,5 +1,5 @@
 #pragma once
-/// What all measurements share: a simulation of a scene with a scheme, and runs that may fail.
+/// Code that all measurements share: a simulation of a scene with a scheme, and runs that may fail.
 
 #include <cmath>
 #include <optional>
@@ -10,20 +10,20 @@
 
 namespace flexarm::bench {
 
-/// Where a run ended before its time.
+/// The failure that ended a run early.
 struct Failure {
   double time;  ///< [s]
   StepResult::Reason reason;
 };
 
-/// What a measurement gave, or why it gave nothing.
+/// The result of a measurement, or the failure that prevented it.
 template <class Value>
 struct Measured {
   std::optional<Failure> failure;
   Value value;
 };
 
-/// `tolerance`: of Newton's method; tight, so that what is measured is the scheme.
+/// Makes a simulation. `tolerance`: of Newton's method; it is tight, so that only errors of the scheme are measured.
 inline Simulation simulation(scene::SceneDescription scene, const Variant& variant, double step,
                              double tolerance = 1e-11) {
   scene.integrator = variant.integrator;
@@ -32,7 +32,7 @@ inline Simulation simulation(scene::SceneDescription scene, const Variant& varia
   return Simulation(std::move(scene));
 }
 
-/// `steps` steps, observe(result) after each that converged.
+/// Makes `steps` steps; calls observe(result) after each step that converged.
 template <class Observe>
 std::optional<Failure> run(Simulation& simulation, int steps, const Observe& observe) {
   for (int n = 0; n < steps; ++n) {

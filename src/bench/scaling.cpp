@@ -18,31 +18,32 @@
 namespace flexarm::bench {
 namespace {
 
-/// Steps are timed in batches of at least so long [s]; the fastest batch counts.
+/// Least duration of a batch of steps that is timed [s]; the fastest batch counts.
 constexpr double kBatchSeconds = 0.01;
 constexpr int kBatches = 5;
-/// Steps before that: the first have no increment to continue.
+/// Steps before timing begins, since the first ones have no last increment to extrapolate.
 constexpr int kStepsBefore = 2;
-/// Times that a scene is read and built.
+/// Number of times that a scene is read and built.
 constexpr int kTries = 3;
 
 const Vector3 kDown(0, 0, -9.81);
 
-/// Bytes that malloc has given out.
+/// Bytes that malloc() has handed out.
 double allocated_bytes() {
 #if __GLIBC_PREREQ(2, 33)
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
-#else  // counts up to 4 GB
+#else  // counts up to 4 GB only
   const struct mallinfo info = mallinfo();
   return static_cast<double>(static_cast<unsigned>(info.uordblks)) +
          static_cast<double>(static_cast<unsigned>(info.hblkhd));
 #endif
 }
 
-/// How long it takes to make something.
+/// Time to make a value.
 struct Making {
-  double first = std::numeric_limits<double>::infinity(), best = first;  ///< try, of all tries [s]
+  double first = std::numeric_limits<double>::infinity(),
+         best = first;  ///< time of the first try; shortest time of all tries [s]
 };
 template <class Value, class Make>
 Making seconds_to_make(std::optional<Value>& value, const Make& make) {
@@ -57,7 +58,7 @@ Making seconds_to_make(std::optional<Value>& value, const Make& make) {
   return seconds;
 }
 
-/// 1, 3, 10, ... up to `largest`.
+/// The sizes 1, 3, 10, ... up to `largest`.
 std::vector<int> half_decades(int first, int largest) {
   std::vector<int> sizes;
   for (int decade = 1; decade <= largest; decade *= 10)
@@ -74,14 +75,14 @@ std::string scene(const std::string& links_and_joints, const std::string& simula
   return urdf::scene(links_and_joints, "<integrator scheme=\"em\" step=\"1e-3\"/>\n" + simulation);
 }
 
-/// Elements of 0.1 m that start to fall from the horizontal.
+/// A cantilever with elements of 0.1 m that falls from the horizontal.
 std::string cantilever(int elements, int order) {
   const Vector3 tip(0.1 * elements, 0, 0);
   return scene(urdf::joint("clamp", "fixed", "world", "beam") + urdf::beam("beam", tip, kSection, elements, "", order),
                urdf::gravity(kDown) + urdf::load("beam", tip, {0, 1, 0}));
 }
 
-/// A trunk with an element of 1 m from branch to branch, and branches of 1 to 10 elements, every other one hinged.
+/// A trunk with an element of 1 m between branches; branches of 1 to 10 elements, every second one on a hinge.
 std::string tree(int branches) {
   std::string body = urdf::joint("clamp", "fixed", "world", "trunk") +
                      urdf::beam("trunk", {static_cast<double>(branches), 0, 0}, kSection, branches);
@@ -97,8 +98,8 @@ std::string tree(int branches) {
   return scene(body, urdf::gravity(kDown));
 }
 
-/// Rods of 0.1 m from the world's origin on, with revolute joints about y and x in turn, each with an initial angle and
-/// a motor.
+/// Rods of 0.1 m that begin at the world's origin, with revolute joints about y and x in turn. Each joint has an
+/// initial angle and a motor.
 std::string rigid_chain(int links) {
   std::string body, simulation, parent = "world";
   for (int i = 0; i < links; ++i) {
@@ -143,9 +144,9 @@ ScalingPoint measure_scaling_point(const ScalingFamily& family, int size) {
   point.read_seconds = seconds_to_make(scene, read).best;
   const double before = allocated_bytes();
   SimulationOptions options;
-  options.reuse_factorisation = false;  // an iteration is an iteration
+  options.reuse_factorisation = false;  // so that all iterations cost the same
   std::optional<Simulation> simulation;
-  malloc_trim(0);  // gives the system what is free, so that the first try has to ask for it
+  malloc_trim(0);  // returns free memory to the system, so that the first try must request it
   const Making building = seconds_to_make(simulation, [&] { return Simulation(*scene, options); });
   point.first_build_seconds = building.first;
   point.build_seconds = building.best;
@@ -177,7 +178,7 @@ ScalingReport measure_scaling(bool quick, const std::function<void(double)>& pro
   ScalingReport report;
   report.quick = quick;
   const std::vector<ScalingFamily> families = scaling_families(quick);
-  double done = 0, whole = 0;  // in units of what a size costs
+  double done = 0, whole = 0;  // in units of the cost of size 1
   for (const ScalingFamily& family : families)
     for (const int size : family.sizes) whole += size;
   for (const ScalingFamily& family : families) {

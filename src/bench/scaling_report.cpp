@@ -1,4 +1,4 @@
-// The scaling measurements as text.
+// Writes the scaling report as text.
 #include <cmath>
 #include <limits>
 
@@ -10,9 +10,9 @@
 namespace flexarm::bench {
 namespace {
 
-/// Fixed costs hide in smaller sizes than this part of the largest.
+/// Sizes below this fraction of the largest one are left out, since fixed costs dominate there.
 constexpr double kUpperPart = 0.01;
-/// What is linear may come out as this by the machine's caches.
+/// Largest slope that counts as linear, since caches may raise it slightly.
 constexpr double kLinear = 1.05;
 
 struct Quantity {
@@ -27,7 +27,7 @@ constexpr Quantity kRead = {"read [ms]", &ScalingPoint::read_seconds, 1e3},
                    kMemory = {"memory [MB]", &ScalingPoint::bytes, 1e-6};
 constexpr Quantity kQuantities[] = {kRead, kFirstBuild, kBuild, kStep, kMemory};
 
-/// Over the sizes from `part` of the largest one on.
+/// Slope over the sizes of at least `part` times the largest one.
 double slope_of(const ScalingSeries& series, double ScalingPoint::*value, double part) {
   std::vector<double> sizes, values;
   for (const ScalingPoint& point : series.points) {
@@ -55,7 +55,7 @@ std::string slope_table(const ScalingReport& report) {
   return text;
 }
 
-/// The steepest of all scenes over the upper decades, against what counts as linear.
+/// The steepest slopes over the two upper decades, compared with the target.
 std::string target_table(const ScalingReport& report) {
   std::string text = head({"slope over the two upper decades", "target", "steepest", "verdict"});
   for (const Quantity& quantity : {kFirstBuild, kBuild, kStep}) {
@@ -95,19 +95,19 @@ std::string point_table(const ScalingSeries& series) {
 std::string to_markdown(const ScalingReport& report, const std::string& picture) {
   std::string text =
       "# How time and memory grow with the size of a mechanism\n\n"
-      "Written by `flexarm bench scaling`. Scheme `em`, steps of 1 ms, full Newton; times are of the processor, in one "
+      "Written by `flexarm bench scaling`. Scheme `em`, steps of 1 ms, full Newton; times are processor times of one "
       "thread.\n\n"
       "- *read*: from URDF text to a scene description, the shortest of three tries; *first build*: from there to a "
-      "simulation, the first time, with memory that the system hands out; *build*: the shortest of three, with memory "
-      "that the process has, which the program `flexarm` keeps; *step*: the fastest of five batches.\n"
-      "- *memory*: what malloc has given to the simulation after these steps.\n"
+      "simulation, the first time, with new memory from the system; *build*: the shortest of three further tries, with "
+      "memory that the process already has, since `flexarm` keeps it; *step*: the fastest of five batches.\n"
+      "- *memory*: allocated by malloc for the simulation after these steps.\n"
       "- *slopes*: of the logarithms, by least squares: over all sizes, where the fixed cost of small ones flattens "
       "them, and "
       "over the two upper decades; 1 is linear. Bold: above 1.05. A table of two points only, or of times below a "
       "millisecond, says little.\n"
-      "- Where memory outgrows the processor's caches the same work takes longer, which bends the curves upwards in "
-      "the middle. The first build is a matter of the system's: with `GLIBC_TUNABLES=glibc.malloc.hugetlb=1` in the "
-      "environment glibc asks for huge pages, which are handed out much faster.\n\n" +
+      "- When memory outgrows the processor's caches, the same work takes longer, which bends the curves upwards in "
+      "the middle. The first build depends on the system: with `GLIBC_TUNABLES=glibc.malloc.hugetlb=1` in the "
+      "environment glibc requests huge pages, which the system provides much faster.\n\n" +
       target_table(report) + "\n" + slope_table(report);
   if (!picture.empty()) text += fmt::format("\n![Time per step, time to build and memory over size]({})\n", picture);
   for (const ScalingSeries& series : report.series)

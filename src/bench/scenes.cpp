@@ -8,10 +8,10 @@ namespace {
 using scene::JointKind;
 using scene::SceneBuilder;
 
-/// Soft enough for steps of 10 ms to resolve all its waves.
+/// Soft enough that steps of 10 ms resolve all waves.
 const scene::DirectSection kSoftSection{400, 200, 200, 16, 20, 24, 1, 0.2, 0.1, 0.1};
 
-/// Joins the tree's parts; `root` connects it to the world.
+/// Builds the tree; `root`: the joint that connects it to the world.
 SceneBuilder tree(JointKind root) {
   SceneBuilder b("tree");
   b.beam("trunk", {{2, 0, 0}}, kSoftSection, 2, 2);
@@ -38,7 +38,7 @@ SceneBuilder clamped_beam(int elements, int order) {
 
 scene::SceneDescription free_tree() {
   SceneBuilder b = tree(JointKind::Floating);
-  // Slow enough for no node to turn by 2 pi in 20 s: the total interpolation ends there.
+  // Slow enough that no node turns by 2 pi in 20 s, where the total interpolation is singular.
   b.scene.initial_links.push_back({"trunk", {0.02, -0.01, 0.03}, {0.1, 0.08, 0.16}, {}});
   b.scene.initial_joints.push_back({"elbow", 0, -0.15, {}});
   b.scene.initial_joints.push_back({"ball/rx", 0, 1.5, {}});
@@ -83,7 +83,8 @@ scene::SceneDescription free_bar() {
 
 scene::SceneDescription axial_oscillator(double omega) {
   SceneBuilder b("oscillator");
-  const double stiffness = omega * omega / 3;  // the consistent mass at the free end is a third of the whole, 1 kg
+  const double stiffness =
+      omega * omega / 3;  // the consistent mass at the free end is a third of the total mass of 1 kg
   b.beam("beam", {{1, 0, 0}}, scene::DirectSection{stiffness, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 1, 1);
   b.joint("clamp", JointKind::Fixed, "world", "beam");
   return b.scene;

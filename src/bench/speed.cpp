@@ -1,4 +1,4 @@
-// All runs of a problem in turns, and their errors.
+// Makes all runs of a problem in turns, and computes their errors.
 #include "bench/speed.h"
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace flexarm::bench {
 namespace {
 
-/// Runs whose median counts, and up to which time of one run there are so many [s]; longer runs are made once.
+/// Number of runs whose median counts, for runs up to kShort [s]; longer runs are made once.
 constexpr int kRepetitions = 3;
 constexpr double kShort = 0.5;
 
-/// What a run costs, relative; for the progress bar.
+/// Relative cost of a run, for the progress bar.
 double cost_of(const SpeedProblem& problem, const Discretisation& d) {
-  constexpr double kSubSteps = 5;  // of em4
+  constexpr double kSubSteps = 5;  // number of em4's sub-steps
   return problem.until / d.step * std::max(d.elements, 1) * std::max(d.order, 1) * (d.scheme == "em4" ? kSubSteps : 1);
 }
 
@@ -47,8 +47,8 @@ struct Times {
   }
 };
 
-/// The reference, which must come to its end, and how far two coarser ones are from it. Its trajectory and frames are
-/// handed out.
+/// Computes the reference, which must be completed, and its differences from two coarser runs. Returns the reference's
+/// run with trajectory and frames.
 SpeedRun compute_reference(const std::string& folder, SpeedMeasurement& out, const std::function<void()>& advance) {
   const Discretisation& d = out.problem.reference;
   const auto complete = [&](const Discretisation& discretisation) {
@@ -91,7 +91,7 @@ void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajec
   for (std::size_t i = 0; i < runs.size(); ++i) times[i].put_medians(out.outcomes[i]);
 }
 
-/// Runs of the same problem by other programs, where they are built in.
+/// Runs of the same problem in other programs, if these are built in.
 std::vector<PeerRun> peer_runs(const std::string& folder, const SpeedProblem& problem, const std::vector<double>& times,
                                bool quick, const std::function<void()>& advance) {
   if (!problem.has_beams()) {
@@ -107,7 +107,7 @@ std::vector<PeerRun> peer_runs(const std::string& folder, const SpeedProblem& pr
   return mujoco_runs(found->second, times, quick, advance);
 }
 
-/// Rigid mechanisms take milliseconds: their times are medians, too.
+/// As peer_runs(). Times of rigid mechanisms, which are milliseconds, are medians of several runs.
 std::vector<PeerRun> timed_peer_runs(const std::string& folder, const SpeedProblem& problem,
                                      const std::vector<double>& times, bool quick,
                                      const std::function<void()>& advance) {

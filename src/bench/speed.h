@@ -1,5 +1,5 @@
 #pragma once
-/// Speed against error: runs of known problems with many schemes, meshes, steps and tolerances.
+/// Measures speed and error: runs of known problems with many schemes, meshes, steps and tolerances.
 
 #include <functional>
 #include <optional>
@@ -13,49 +13,49 @@ namespace flexarm::bench {
 
 // ---------------------------------------------------------------- problems
 
-/// How a run discretises its problem.
+/// The discretisation of a problem in a run.
 struct Discretisation {
   std::string scheme;
-  int order;     ///< of all beam elements; 0: the scene file's
-  int elements;  ///< in all beams together, in proportion to those of the scene file; 0: those
+  int order;     ///< of all beam elements; 0: as in the scene file
+  int elements;  ///< in all beams together, distributed as in the scene file; 0: as in the scene file
   double step;   ///< [s]
   double tolerance = IntegratorDescription().tolerance;  ///< of Newton's method
   bool may_be_planar = true;                             ///< see IntegratorDescription
 
-  std::string mesh() const;  ///< "8 x 2": elements and their order; "–": the scene file's
+  std::string mesh() const;  ///< "8 x 2": elements and their order; "–": as in the scene file
 };
 
 struct SpeedProblem {
   std::string name, title;
-  std::string scene, commands;  ///< files below the folder of configuration; no commands: empty
-  std::string probe;            ///< its positions are compared
+  std::string scene, commands;  ///< files below the configuration folder; empty: no commands
+  std::string probe;            ///< the probe whose positions are compared
   double until;                 ///< [s]
-  double interval;              ///< of comparison, a multiple of all steps [s]
+  double interval;              ///< interval between comparisons, a multiple of all steps [s]
   Discretisation reference;     ///< finer than all runs
   std::vector<Discretisation> runs;
-  std::string note = {};   ///< what the reader of the report should know
-  std::string frame = {};  ///< link in whose frame the probe is compared; empty: the world
+  std::string note = {};   ///< what readers of the report should know
+  std::string frame = {};  ///< link in whose frame the probe's positions are compared; empty: the world
 
   bool has_beams() const { return reference.elements > 0; }
 };
 
-/// A figure that flexarm shall reach, and the best of the public programs: tuned for this error, on one machine in one
-/// run with flexarm. Machines differ, so only these two compare.
+/// A target for flexarm, and the result of the best public program. Both were tuned for this error, and measured on the
+/// same machine at the same time as flexarm. Times on other machines cannot be compared with these.
 struct SpeedTarget {
   std::string problem;
   double error;                           ///< trajectory_error
-  double public_seconds, beside_seconds;  ///< for the whole problem; flexarm's in the same run
-  double target_seconds;                  ///< the same
-  std::string public_model;               ///< what was fastest there
+  double public_seconds, beside_seconds;  ///< for the whole problem; of flexarm in the same session
+  double target_seconds;                  ///< for the whole problem
+  std::string public_model;               ///< the fastest model of the public program
 };
 
-/// Of MuJoCo's time for the same motion at the same error.
+/// A target relative to MuJoCo's time for the same motion with the same error.
 struct PeerTarget {
   std::string problem, variant;  ///< "RK4"
-  double error, ratio;           ///< flexarm's time over MuJoCo's, at most
+  double error, ratio;           ///< largest ratio of flexarm's time to MuJoCo's
 };
 
-/// A scene as it is, with its own mesh, in steps of 1 ms: how fast is it for somebody who just runs it?
+/// A scene with its own mesh and steps of 1 ms: measures the speed that a user gets without tuning.
 struct RealTimeScene {
   enum class Unit { TimesRealTime, MicrosecondsPerStep, MicrosecondsPerTwoIterations };
 
@@ -70,48 +70,48 @@ std::vector<SpeedProblem> speed_problems();
 std::vector<SpeedTarget> speed_targets();
 PeerTarget peer_target();
 std::vector<RealTimeScene> real_time_scenes();
-/// Short runs, few of them: a test of the command, not a measurement.
+/// Fewer and shorter runs, to test the command rather than to measure.
 SpeedProblem shortened(SpeedProblem problem);
 RealTimeScene shortened(RealTimeScene scene);
 
 // ---------------------------------------------------------------- runs
 
-/// A point of the world in a frame.
+/// Converts a point of the world to a frame.
 Vector3 in_frame(const Pose& frame, const Vector3& point);
 
-/// What one run of a discretisation gave.
+/// The result of one run of a discretisation.
 struct SpeedRun {
   std::optional<Failure> failure;
   Trajectory trajectory;     ///< in the problem's frame
-  std::vector<Pose> frames;  ///< that frame at the same times; empty: the world
-  double build_seconds = 0;  ///< processor time of building the model from a scene that has been read
-  double seconds = 0;        ///< processor time of stepping, all steps: the wall time of an idle machine
-  double wall_seconds = 0;   ///< wall time of the same
+  std::vector<Pose> frames;  ///< poses of that frame at the same times; empty: the world
+  double build_seconds = 0;  ///< processor time to build the model from a scene that was already read
+  double seconds = 0;        ///< processor time of all steps, which is the wall time on an idle machine
+  double wall_seconds = 0;   ///< wall time of all steps
   long steps = 0;
-  long iterations = 0, factorisations = 0, halvings = 0;  ///< sums of StepResult's
+  long iterations = 0, factorisations = 0, halvings = 0;  ///< sums over all StepResults
 };
 
-/// `reuse_factorisation`: see StepSettings.
-/// @throws std::runtime_error if a file cannot be read, std::invalid_argument if a beam cannot have its share of the
-/// elements or the step does not divide the interval.
+/// @param reuse_factorisation  see StepSettings
+/// @throws std::runtime_error if a file cannot be read, std::invalid_argument if the elements cannot be distributed
+/// over the beams, or if the step does not divide the interval
 SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const Discretisation& discretisation,
                    bool reuse_factorisation = true);
 
 // ---------------------------------------------------------------- measurements
 
-/// All runs of a discretisation: medians of their times, the counts of the first.
+/// The result of all runs of a discretisation: medians of their times, and the counts of the first run.
 struct SpeedOutcome {
   Discretisation discretisation;
   SpeedRun run;  ///< without its trajectory
   int repetitions = 0;
-  double error = 0;  ///< undefined after a failure
+  double error = 0;  ///< undefined if the run failed
 };
 
 /// A run by another program.
 struct PeerOutcome {
   std::string program, variant;
-  int segments;          ///< per beam; 0: all is rigid
-  double step, seconds;  ///< step; of the processor, for stepping [s]
+  int segments;          ///< per beam; 0: everything is rigid
+  double step, seconds;  ///< length of a step; processor time of all steps [s]
   bool completed;
   double error;  ///< undefined unless completed
 };
@@ -119,63 +119,64 @@ struct PeerOutcome {
 struct SpeedMeasurement {
   SpeedProblem problem;
   SpeedOutcome reference;
-  double largest_displacement = 0;  ///< of the probe in the reference [m]: an error of 1
-  /// Distance between the reference and the same with half of its elements; with twice its step.
+  double largest_displacement = 0;  ///< of the probe in the reference [m]; errors are relative to it
+  /// Differences between the reference and the same run with half of the elements, and with twice the step.
   double mesh_error = 0, step_error = 0;
   std::vector<SpeedOutcome> outcomes;
   std::vector<PeerOutcome> peers;
 
   double reference_error() const { return mesh_error + step_error; }
-  /// A run's own error is at most so large.
+  /// Upper bound of a run's own error.
   double error_bound(double error) const { return error + reference_error(); }
-  /// False where the error of the reference hides that of the run.
+  /// False if the error of the reference is too large to measure this error.
   bool resolves(double error) const { return error >= 2 * reference_error(); }
-  /// The run with the next smaller step, all else equal; null if there is none.
+  /// The run with the next smaller step and otherwise equal settings; null if there is none.
   const SpeedOutcome* next_finer(const SpeedOutcome& outcome) const;
-  /// The fastest run whose error surely is at most so large, by this scheme (empty: any); null if there is none. That
-  /// of the next finer run must be, too: else errors of mesh and step happened to cancel.
+  /// The fastest run with this scheme (empty: any) whose error certainly is at most `error`; null if there is none.
+  /// This must also hold for the next finer run: otherwise errors of mesh and step may have cancelled by chance.
   const SpeedOutcome* fastest(double error, const std::string& scheme = {}) const;
-  /// The fastest of the other programs' runs whose error surely is at most so large; null if there is none.
+  /// The fastest run of other programs whose error certainly is at most `error`; null if there is none.
   const PeerOutcome* fastest_peer(double error, const std::string& variant) const;
 };
 
-/// Time per element and full Newton iteration, all included: steps of 0.05 s of the right-angle cantilever.
+/// Total time per element and full Newton iteration, in steps of 0.05 s of the right-angle cantilever.
 struct IterationCost {
   std::string scheme;
   int order, elements;
   double seconds;  ///< of the processor
 };
 
-/// The same run in a plane and in three dimensions.
+/// Times of the same run in a plane and in three dimensions.
 struct PlanarComparison {
   std::string problem;
-  double error;  ///< that both have, at most
+  double error;  ///< upper bound for both runs
   Discretisation discretisation;
-  double plane_seconds, space_seconds;  ///< of the processor
+  double plane_seconds, space_seconds;  ///< processor time
   long steps;
-  double difference;  ///< trajectory_error of one beside the other
+  double difference;  ///< trajectory_error between the two runs
 };
 
-/// The run of median time.
+/// The run with the median time.
 struct RealTimeOutcome {
   RealTimeScene scene;
   SpeedRun run;
 
-  /// In the scene's unit.
+  /// The result in the scene's unit.
   double measured() const;
 };
 
-/// Rigid bodies that touch: a run of flexarm or of another program, with steps of 1 ms.
+/// A run of rigid bodies with contacts, in flexarm or another program, with steps of 1 ms.
 struct ContactRun {
   std::string scene, program;
-  double seconds;  ///< of the processor, for all steps [s]
+  double seconds;  ///< processor time of all steps [s]
   long steps;
-  int most_contacts;  ///< points that touch at a time
-  double deepest;     ///< penetration [m]
-  double gained;      ///< most that the mechanical energy, less the work from outside, is above its start [J]
+  int most_contacts;  ///< most contact points at a time
+  double deepest;     ///< largest penetration [m]
+  double
+      gained;  ///< largest increase of the mechanical energy, without the work of external forces, since the start [J]
   bool completed;
-  double crept = 0;        ///< by the last body, up or down, from 1 s to the end [m]
-  bool is_driven = false;  ///< there is work from outside, which other programs do not tell
+  double crept = 0;        ///< vertical motion of the last body from 1 s to the end [m]
+  bool is_driven = false;  ///< external forces do work, which other programs do not report
 };
 
 struct SpeedReport {
@@ -187,23 +188,24 @@ struct SpeedReport {
   bool quick = false;
 };
 
-/// Measures problems one after another; `folder`: of configuration, config/ in the sources. Runs of a problem take
-/// turns, so that a change of the machine's speed meets all. `progress(part, label)`: part done, in [0, 1].
+/// Measures problems one after another; `folder`: the configuration folder, config/ in the sources. The runs of a
+/// problem are made in turns, so that changes of the machine's speed affect all. `progress(part, label)`: completed
+/// fraction.
 SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProblem>& problems, bool quick,
                           const std::function<void(double, const std::string&)>& progress);
 
-/// The fastest runs for some errors, in turns with the same in three dimensions; of problems in a plane.
+/// For plane problems: the fastest runs for some errors, in turns with the same runs in three dimensions.
 std::vector<PlanarComparison> compare_planar(const std::string& folder, const SpeedReport& report);
 std::string planar_table(const std::vector<PlanarComparison>& comparisons);
 
-/// A chain that falls, a stack and a grasp, of flexarm and, where it is built with it, MuJoCo with its defaults; and
-/// scenes of flexarm with contacts that are far, and without.
+/// Runs of flexarm and, if it is built with it, of MuJoCo with its defaults: a falling chain, a stack, and a grasp.
+/// Also scenes of flexarm with contacts that are never close, and without contacts.
 std::vector<ContactRun> compare_contacts(bool quick);
 std::string contact_table(const std::vector<ContactRun>& runs);
 
-/// The tables. `picture`: file name of the picture next to them; empty if there is none.
+/// The tables. `picture`: file name of the plot in the same folder; empty: none.
 std::string to_markdown(const SpeedReport& report, const std::string& picture);
-/// One row per discretisation, then those of other programs, the references and the targets: see the header line.
+/// A CSV table: one row per discretisation, then runs of other programs, references and targets; see its header line.
 std::string runs_to_csv(const SpeedReport& report);
 
 }  // namespace flexarm::bench

@@ -1,4 +1,4 @@
-// Rigid bodies that touch, beside MuJoCo; and what contacts cost that are far.
+// Measures rigid bodies in contact, in comparison with MuJoCo, and the cost of contacts that never close.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -19,17 +19,17 @@
 namespace flexarm::bench {
 namespace {
 
-constexpr double kStep = 1e-3;  // of all runs of both programs [s]
-constexpr double kSettled = 1;  // what creeps, does so from then on [s]
+constexpr double kStep = 1e-3;  // of all runs in both programs [s]
+constexpr double kSettled = 1;  // time from which creep is measured [s]
 
-/// The same bodies for both programs. What creeps is the last body.
+/// The same bodies for both programs. Creep is measured for the last body.
 struct Touching {
   std::string name;
   std::string urdf, mjcf;
   double until;                // [s]
-  std::vector<double> pushes;  // on the first freedoms of MuJoCo's model, as the scene's efforts [N]
-  bool is_driven;              // there is work from outside, which MuJoCo does not tell
-  bool is_far = false;         // nothing comes near anything
+  std::vector<double> pushes;  // forces on the first coordinates of MuJoCo's model, equal to the scene's efforts [N]
+  bool is_driven;              // external forces do work, which MuJoCo does not report
+  bool is_far = false;         // no body comes close to another one
 };
 
 std::string inertial(double mass, const Vector3& inertia, const Vector3& middle = {0, 0, 0}) {
@@ -54,7 +54,7 @@ std::string mjcf_of(const std::string& bodies, double friction) {
       kStep, friction, bodies);
 }
 
-/// Ten links of 0.2 m, with balls in their middles, fall slantwise.
+/// A chain of ten links of 0.2 m, with balls at their middles, that falls obliquely.
 Touching chain() {
   constexpr double kMass = 0.5, kInertia = 2e-3;
   const std::string inertia = inertial(kMass, Vector3::Constant(kInertia), {0.1, 0, 0});
@@ -94,7 +94,7 @@ Touching stack() {
   return {"stack of five boxes", urdf_of(parts, starts), mjcf_of(bodies, 0.5), 3, {}, false};
 }
 
-/// Two fingers press a block with 10 N each, and hold it.
+/// Two fingers that press a block with 10 N each, and hold it.
 Touching grasp() {
   const std::string finger = inertial(0.2, Vector3::Constant(1e-4));
   std::string parts = "<contact first=\"block\" second=\"*\" friction=\"0.8\"/>", bodies;
@@ -127,14 +127,14 @@ Touching grasp() {
           true};
 }
 
-/// What contact costs that does not come about: the same scene with it and without.
+/// A scene with contacts that never close, or the same scene without contacts, to measure what these contacts cost.
 Touching far_scene(const std::string& what, const std::string& parts, const std::string& loads,
                    const std::string& contacts) {
   const char* kind = contacts.empty() ? ", no contact" : ", far contacts";
   return {what + kind, urdf_of(contacts + parts, loads), "", 3, {}, false, true};
 }
 
-/// A rigid arm of six links, and five boxes that its hand may touch.
+/// A rigid arm of six links, and five boxes that its hand could touch.
 Touching far_boxes(bool with_contact) {
   std::string arm, boxes, contacts, parent = "world";
   const auto shape = [](const std::string& size) {
@@ -159,7 +159,7 @@ Touching far_boxes(bool with_contact) {
   return far_scene("six links, five boxes", boxes + arm, "", contacts);
 }
 
-/// Two cantilevers of 20 elements, one high over the other one, that bend in space.
+/// Two cantilevers of 20 elements, one high above the other, that bend in 3D.
 Touching far_beams(bool with_contact) {
   std::string beams, loads;
   for (const auto& [name, height] : {std::pair("low", 1), std::pair("high", 4)}) {
@@ -188,7 +188,7 @@ ContactRun run_flexarm(const Touching& problem, double until) {
     out.seconds += processor_seconds() - clock;
     if (!out.completed) return out;
     ++out.steps;
-    if (problem.is_far) continue;  // what looks at all points takes the step's data out of the caches
+    if (problem.is_far) continue;  // evaluating all points would remove the step's data from the caches
     simulation.contacts(contacts);
     out.most_contacts = std::max(out.most_contacts, static_cast<int>(contacts.size()));
     for (const ActingContact& contact : contacts) out.deepest = std::max(out.deepest, contact.penetration);

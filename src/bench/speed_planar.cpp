@@ -1,4 +1,4 @@
-// What it saves to take steps in a plane.
+// Measures how much time steps in a plane save.
 #include <algorithm>
 
 #include <fmt/format.h>

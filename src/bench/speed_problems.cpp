@@ -1,4 +1,4 @@
-// The problems of the speed report: references, grids of runs, targets.
+// The problems of the speed report: references, runs, targets.
 #include "bench/speed.h"
 
 #include <algorithm>
@@ -6,14 +6,14 @@
 namespace flexarm::bench {
 namespace {
 
-/// Newton's tolerance: the default, and some that save iterations.
+/// Tolerances of Newton's method: the default, and larger ones that save iterations.
 constexpr double kTight = 1e-8, kLoose = 1e-4, kLoosest = 1e-3, kRough = 1e-2;
 
 struct Mesh {
   int elements, order;
 };
 
-/// Every scheme with every mesh, tolerance and step; steps are parts of the interval of comparison.
+/// Adds runs for all combinations of schemes, meshes, tolerances and steps; `parts`: numbers of steps per interval.
 void add_product(SpeedProblem& problem, const std::vector<const char*>& schemes, const std::vector<Mesh>& meshes,
                  const std::vector<int>& parts, const std::vector<double>& tolerances) {
   for (const char* scheme : schemes)
@@ -23,13 +23,13 @@ void add_product(SpeedProblem& problem, const std::vector<const char*>& schemes,
           problem.runs.push_back({scheme, mesh.order, mesh.elements, problem.interval / part, tolerance});
 }
 
-/// em and its base; this with a rough tolerance, too, by which some runs do not come to their end and others are fast.
+/// Adds runs of em and em0. With the rough tolerance for em0, some runs are fast, and others fail.
 void add_em(SpeedProblem& problem, const std::vector<Mesh>& meshes, const std::vector<int>& parts) {
   add_product(problem, {"em", "em0"}, meshes, parts, {kTight, kLoose, kLoosest});
   add_product(problem, {"em0"}, meshes, parts, {kRough});
 }
 
-/// The schemes of second order that are compared with em and its base, which have more runs.
+/// Schemes of second order for comparison; em and em0 have more runs.
 const std::vector<const char*> kOthers = {"em_symmetric", "edmc2", "m1", "newmark", "hht2"};
 
 SpeedProblem spin_up() {
@@ -93,7 +93,7 @@ SpeedProblem double_pendulum() {
 }
 
 SpeedProblem demo_arm() {
-  // Not em4 as the reference: it steps backwards, in which the brakes would drive.
+  // The reference is not em4, which also steps backwards in time: then the brakes would drive the arm.
   SpeedProblem p{
       "demo_arm", "The demo's arm", "demo_arm.urdf", "demo_commands.yaml", "payload", 10, 0.1, {"em", 3, 8, 0.00025},
       {}};
@@ -183,7 +183,7 @@ RealTimeScene shortened(RealTimeScene scene) {
 SpeedProblem shortened(SpeedProblem problem) {
   constexpr int kIntervals = 3;
   problem.until = kIntervals * problem.interval;
-  // The coarsest run of each scheme, and the same with half the step.
+  // The coarsest run of each scheme, and the same run with half the step.
   std::vector<Discretisation> few;
   for (const Discretisation& run : problem.runs) {
     if (std::any_of(few.begin(), few.end(), [&](const Discretisation& d) { return d.scheme == run.scheme; })) continue;

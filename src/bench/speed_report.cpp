@@ -1,4 +1,4 @@
-// The speed report as text.
+// Writes the speed report as text.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ std::string discretisation_text(const Discretisation& d) {
   return fmt::format("{}, {}, {:g} s{}", d.scheme, d.mesh(), d.step, tolerance_text(d.tolerance));
 }
 
-/// Errors for which the fastest runs are sought, largest first.
+/// Errors for which the fastest runs are listed, from the largest.
 std::vector<double> error_levels(const SpeedProblem& problem) {
   std::vector<double> levels = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
   for (const SpeedTarget& target : speed_targets())
@@ -89,7 +89,8 @@ std::string scheme_table(const SpeedMeasurement& m) {
   return text;
 }
 
-/// Runs of other programs than which none of the same program is both faster and more accurate, by error.
+/// The Pareto front of each other program: runs to which none of the same program is faster and more accurate; by
+/// error.
 std::vector<PeerOutcome> peer_front(const SpeedMeasurement& m) {
   std::vector<PeerOutcome> front;
   for (const PeerOutcome& peer : m.peers) {
@@ -111,7 +112,7 @@ std::string peer_table(const SpeedMeasurement& m) {
                                   "their error tends to that of this model. "
                                 : "the same mechanism. ";
   text += fmt::format(
-      "Of {} runs, of which {} did not come to their end, those than which none is both faster and more accurate:\n\n",
+      "Of {} runs, {} of which were not completed, those for which no other run is both faster and more accurate:\n\n",
       m.peers.size(), failed);
   text += head({"program", "variant", "segments per beam", "step [s]", "error", "time [ms]",
                 "flexarm at that error [ms]", "how many times faster"});
@@ -130,13 +131,13 @@ std::string section(const SpeedMeasurement& m) {
   const long failed = std::count_if(m.outcomes.begin(), m.outcomes.end(),
                                     [](const SpeedOutcome& outcome) { return outcome.run.failure.has_value(); });
   std::string text = fmt::format(
-      "\n## {}\n\n`{}`: `config/{}`, {:g} s, the probe `{}` compared every {:g} s{}. It moves by {:.3g} m at most: "
-      "an error of 1.\n\n",
+      "\n## {}\n\n`{}`: `config/{}`, {:g} s, the probe `{}` compared every {:g} s{}. It moves by at most {:.3g} m, "
+      "which is an error of 1.\n\n",
       p.title, p.name, p.scene, p.until, p.probe, p.interval,
       p.frame.empty() ? "" : fmt::format(" in the frame of link `{}`", p.frame), m.largest_displacement);
   text += fmt::format(
       "Reference: {}; {:.3g} s of computing. Its error is estimated as {:.1e}: {:.1e} (half its elements) + {:.1e} "
-      "(twice its step).\n{} runs, of which {} did not come to their end.\n\n",
+      "(twice its step).\n{} runs, {} of which were not completed.\n\n",
       discretisation_text(p.reference), m.reference.run.seconds, m.reference_error(), m.mesh_error, m.step_error,
       m.outcomes.size(), failed);
   if (!p.note.empty()) text += p.note + "\n\n";
@@ -215,7 +216,7 @@ std::string target_table(const SpeedReport& report) {
   return text;
 }
 
-/// Recorded figures: other programs are not part of the report's run.
+/// A table of recorded figures, since public programs do not run with the report.
 std::string public_table(const SpeedReport& report) {
   std::string text = head({"what", "error", "best public program [s]", "its model", "flexarm beside it [s]", "ratio"});
   for (const SpeedTarget& target : speed_targets())
@@ -234,7 +235,7 @@ std::string iteration_table(const SpeedReport& report) {
   return text;
 }
 
-/// How much longer than the processor's time the wall time was.
+/// Ratio of wall time to processor time.
 double load(const SpeedReport& report) {
   double wall = 0, processor = 0;
   for (const SpeedMeasurement& m : report.measurements)
@@ -248,14 +249,14 @@ double load(const SpeedReport& report) {
 const char* const kLegend = R"(
 - **error**: root mean square over time of the probe's distance from the reference, relative to the largest distance of
   the reference from its start. The reference is computed by flexarm itself, finer than every run; its own error is
-  estimated by a run with half its elements and one with twice its step. A run counts for an error if its own and the
-  reference's together are at most so large, and those of the run with the next smaller step, too: otherwise errors of
-  mesh and step happened to cancel. †: less than twice the reference's error, so not resolved.
-- **time**: of stepping, all steps; building the model from the scene is told apart. One thread, median of three runs
-  (of one where it takes half a second or more), all runs of a problem in turns. It is the time of the processor, which
-  is the wall time of a machine that has nothing else to do.
-- **elements**: of all beams together. **tolerance**: of Newton's method. While factors may be kept, which is the
-  default, updates go on until what remains is at most the *square* of the tolerance: round-off for the default, 1e-8.
+  estimated by a run with half its elements and one with twice its step. A run counts for an error if its own error plus
+  that of the reference is at most so large, and the same holds for the run with the next smaller step: otherwise the
+  errors of mesh and step may have cancelled by chance. †: less than twice the reference's error, so not resolved.
+- **time**: processor time of all steps, without building the model from the scene. One thread, median of three runs (a
+  single run if it takes half a second or more), all runs of a problem in turns. On a machine that has nothing else to
+  do, it equals the wall time.
+- **elements**: of all beams together. **tolerance**: of Newton's method. If factors may be kept, which is the default,
+  the iteration continues until the remainder is at most the *square* of the tolerance: round-off for the default, 1e-8.
 - **iterations** of Newton's method, **factorisations** of its tangent, **halvings** of steps that did not converge.
 )";
 
@@ -266,16 +267,16 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
   text += report.quick ? "Written by `flexarm bench speed --quick`: a test of the command, not a measurement.\n"
                        : "Written by `flexarm bench speed`; all runs are in `speed.csv`, which it writes, too.\n";
   text += kLegend;
-  text += fmt::format("\nThe wall time was {:.2f} times the processor's, all in all.\n", load(report));
+  text += fmt::format("\nThe wall time was {:.2f} times the processor time, in total.\n", load(report));
   text += "\n## Targets\n\n" + target_table(report);
   text +=
       "\nThe best of the public programs, tuned for each error, and flexarm as it was then, in one run on one machine "
-      "(another one than this report's):\n\n" +
+      "(not the machine of this report):\n\n" +
       public_table(report);
   if (!picture.empty())
     text += fmt::format(
-        "\n![Time over error, problem by problem]({})\n\nEvery run that came to its end, and lines through those than "
-        "which none of the same scheme is both faster and more accurate, be it by chance.\n",
+        "\n![Time over error, problem by problem]({})\n\nEvery completed run, and lines through the Pareto fronts: "
+        "runs for which no run of the same scheme is both faster and more accurate, even by chance.\n",
         picture);
   for (const SpeedMeasurement& m : report.measurements) text += section(m);
   if (!report.planar.empty())
@@ -286,13 +287,13 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
         planar_table(report.planar);
   if (!report.contacts.empty())
     text +=
-        "\n## Bodies that touch\n\nSteps of 1 ms; MuJoCo with its defaults (its soft contacts creep, and what they "
-        "gain is told as it tells it).\n\n" +
+        "\n## Bodies in contact\n\nSteps of 1 ms; MuJoCo with its defaults (its soft contacts creep, and their energy "
+        "gain is the one that MuJoCo reports).\n\n" +
         contact_table(report.contacts);
   if (!report.iteration_costs.empty())
     text +=
         "\n## Cost of an iteration\n\nRight-angle cantilever, 32 elements, steps of 0.05 s, a factorisation in every "
-        "iteration; all that stepping does, over elements and iterations.\n\n" +
+        "iteration; time of all steps, divided by elements and iterations.\n\n" +
         iteration_table(report);
   return text;
 }

@@ -1,4 +1,4 @@
-// One run of a problem, and how far it is from the reference.
+// Makes one run of a problem.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often `part` goes into `whole`.
+/// The integer whole / part.
 int quotient(double whole, double part, const char* what) {
   const double ratio = whole / part;
   const int rounded = static_cast<int>(std::lround(ratio));
@@ -26,7 +26,7 @@ int quotient(double whole, double part, const char* what) {
   return rounded;
 }
 
-/// Gives all beams together `elements` elements, each as many times more of them than it has.
+/// Distributes `elements` over all beams; each beam's number is multiplied by the same factor.
 void refine(scene::SceneDescription& scene, int elements, int order) {
   int total = 0;
   for (const scene::LinkDescription& link : scene.links)
@@ -64,7 +64,7 @@ std::size_t probe_of(const scene::SceneDescription& scene, const std::string& na
   throw std::runtime_error(fmt::format("{}: expected a probe '{}'", scene.file, name));
 }
 
-/// The link of that name; none: the world.
+/// The index of the link with that name; empty name: the world.
 std::optional<std::size_t> frame_of(const Simulation& simulation, const std::string& name) {
   if (name.empty()) return std::nullopt;
   const std::vector<std::string>& links = simulation.link_names();

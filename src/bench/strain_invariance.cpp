@@ -13,13 +13,14 @@ namespace {
 
 constexpr int kNodes = 3, kSteps = 2, kIterates = 2;
 
-/// Rotation of node i at a part of the way, in (0, 1]; not proportional to it.
+/// Rotation of node i at the fraction `part`, in (0, 1], of the path; not proportional to `part`.
 Quaternion node_rotation(int i, double part) {
   const Vector3 along(0.8 * i, -0.5 * i, 0.6 * i), aside(0.2, 0.3 * i, -0.1);
   return so3::exp_quaternion(Vector3(part * along + std::sin(3 * part) * aside));
 }
 
-/// Curvatures at the end, where `rigid` (a rotation vector) is superposed in proportion to the way.
+/// Curvatures at the end, with a superposed rotation that grows to `rigid` (a rotation vector) in proportion to the
+/// path.
 std::vector<Vector3> curvatures(const Scheme& scheme, const Vector3& rigid) {
   const Model model = build_model(cantilever(1, kNodes - 1));
   State state = initial_state(model);

@@ -38,7 +38,7 @@ scene::SceneDescription scene_of(const std::string& folder, const ThesisRun& run
   return scene;
 }
 
-/// Borders of elements between two arc lengths.
+/// Number of borders between elements between two arc lengths.
 int borders_between(const Model& model, double from, double to) {
   int count = 0;
   for (const SlideLine& line : model.slide_lines)
@@ -49,7 +49,7 @@ int borders_between(const Model& model, double from, double to) {
   return count;
 }
 
-/// What is measured while a run goes on.
+/// Measures quantities during a run.
 class Observer {
  public:
   Observer(const ThesisExample& example, const Simulation& simulation, int stride)
@@ -137,7 +137,7 @@ ThesisOutcome run_thesis(const std::string& scene_folder, const ThesisExample& e
 ThesisReport measure_thesis(const std::string& scene_folder, bool quick, const std::function<void(double)>& progress) {
   ThesisReport report;
   report.examples = thesis_examples();
-  // The cost of a run goes with its steps and its elements; roughly.
+  // The cost of a run is roughly proportional to its number of steps and elements.
   const auto cost = [](const ThesisExample& example, const ThesisRun& run) { return example.cost / run.step; };
   double whole = 0, done = 0;
   for (const ThesisExample& example : report.examples)

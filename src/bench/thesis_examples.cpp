@@ -1,4 +1,4 @@
-// The runs of Muñoz 2004, chapter 12, with what its text says of them; the scenes are in config/thesis.
+// The runs of Muñoz 2004, chapter 12, with the thesis's statements about them. The scenes are in config/thesis.
 #include "bench/thesis.h"
 #include "flexarm/scene/scene_description.h"
 #include "math/so3.h"
@@ -25,7 +25,7 @@ std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
-/// Columns for the travel and for the places of the scene's probes, called so.
+/// Adds observables: the travel, and the positions of the scene's probes under these names.
 void observe_travel_and_probes(ThesisExample& example, const std::vector<std::string>& names) {
   example.observables = {"travel"};
   for (const std::string& name : names)
@@ -33,7 +33,7 @@ void observe_travel_and_probes(ThesisExample& example, const std::vector<std::st
   example.observe = [travel = example.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
 }
 
-/// Contact algorithms with the integrators that they belong to.
+/// Contact algorithms, with the integrators to which they belong.
 struct Algorithm {
   const char *label, *scheme, *contact;
   bool smooth;

@@ -1,4 +1,4 @@
-// The thesis's examples as text.
+// Writes the thesis report as text.
 #include <algorithm>
 #include <optional>
 
@@ -26,7 +26,7 @@ std::string crossings_cell(const std::vector<double>& crossings) {
 }
 
 std::string final_cell(const ThesisExample& example, const ThesisOutcome& out) {
-  // Of the history's last row: the first observable and the first probe, or r, z, theta.
+  // From the last row of the history: the first observable and the first probe, or r, z, theta.
   std::string text;
   const std::vector<double>& row = out.history.back();
   for (std::size_t k = 0; k < 4 && k < example.observables.size(); ++k)
@@ -52,20 +52,20 @@ std::string example_table(const ThesisExample& example, const std::vector<Thesis
   return text;
 }
 
-/// "H2, alg3" is the algorithm "alg3" on "H2, ".
+/// Whether a label is the algorithm's name, alone or after ", ": "H2, alg3" ends with "alg3".
 bool ends_with(const std::string& label, const std::string& algorithm) {
   return label == algorithm ||
          (label.size() > algorithm.size() + 2 &&
           label.compare(label.size() - algorithm.size() - 2, std::string::npos, ", " + algorithm) == 0);
 }
 
-/// Mesh and step of a run, where the run is one by this algorithm.
+/// Mesh and step of a run; empty if the run has another algorithm.
 std::optional<std::string> conditions(const ThesisRun& run, const std::string& algorithm) {
   if (!ends_with(run.label, algorithm)) return std::nullopt;
   return run.label.substr(0, run.label.size() - algorithm.size()) + fmt::format("{:g}", run.step);
 }
 
-/// How each contact algorithm did where all of them have been run: at the thesis's steps, and back and forth.
+/// Results of each contact algorithm in those runs that all of them have: at the thesis's steps, and back and forth.
 std::string summary_table(const ThesisReport& report) {
   std::string text =
       "| run | runs | completed | halvings | iterations | ms per step | largest energy defect of the completed |\n"

@@ -15,7 +15,7 @@ double distance(const State& a, const State& b) {
   return largest;
 }
 
-/// Positions, accelerations and forces stay, velocities change their signs; a predictor is not kept.
+/// Reverses the sign of velocities; positions, accelerations and forces stay. Data of the predictor is dropped.
 State reversed(State state) {
   for (NodeState& node : state.nodes) {
     node.velocity *= -1;

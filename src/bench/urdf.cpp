@@ -5,7 +5,7 @@
 namespace flexarm::bench::urdf {
 namespace {
 
-/// `<` and `&` of an expression as XML writes them.
+/// Escapes `<` and `&` in an expression for XML.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
@@ -27,7 +27,7 @@ std::string triple(const Vector3& v) {
 }
 
 std::string rod(double ea, double ei, double mass) {
-  constexpr double kShear = 0.35, kTorsion = 0.8;  // G A k / EA, G J / EI at Poisson's ratio 0.25
+  constexpr double kShear = 0.35, kTorsion = 0.8;  // G A k / EA and G J / EI for Poisson's ratio 0.25
   const double inertia = mass * ei / ea;
   return fmt::format(
       "<section ea=\"{}\" ga2=\"{}\" ga3=\"{}\" gj=\"{}\" ei2=\"{}\" ei3=\"{}\" mass=\"{}\" j1=\"{}\" j2=\"{}\" "

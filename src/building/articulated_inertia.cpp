@@ -1,36 +1,19 @@
 #include "building/passes.h"
-
+#include "building/spatial_inertia.h"
 #include "joints/joint_kinematics.h"
 #include "math/dense_eigenpairs.h"
-#include "math/so3.h"
 
 namespace flexarm {
 namespace {
 
-/// Inertia of a motion beside that of the coordinate alone with all others locked; less is what is left by round-off.
+/// Inertia of a motion, relative to that of the coordinate alone with all others locked. Smaller values are round-off.
 constexpr double kRoundOff = 1e-13;
-/// The same beside that of the largest motion about the joint: less has no digits by which it could be judged.
+/// The same, relative to the largest motion about the joint. Smaller values have no digits by which they could be
+/// judged.
 constexpr double kJudgeable = 1e-11;
 
-/// About a node, of {displacement, spin} in world axes.
-using SpatialInertia = Matrix6;
-
-SpatialInertia own_inertia(const NodalInertia& inertia, const Matrix3& rotation) {
-  SpatialInertia out = SpatialInertia::Zero();
-  out.topLeftCorner<3, 3>().diagonal().setConstant(inertia.total_mass);
-  out.bottomRightCorner<3, 3>() = rotation * (inertia.rotary + inertia.beam_rotary) * rotation.transpose();
-  return out;
-}
-
-/// About a point from which the present one is `way` away.
-SpatialInertia moved(const SpatialInertia& inertia, const Vector3& way) {
-  Matrix6 columns = Matrix6::Identity();
-  columns.topRightCorner<3, 3>() = -so3::hat(way);
-  return columns.transpose() * inertia * columns;
-}
-
-/// Factorises the joints' mass matrix from the leaves to the root (Featherstone): what is outboard of a joint resists
-/// the others inboard with the inertia that is left when the joint itself yields.
+/// Factorises the joints' mass matrix from the leaves to the root (Featherstone). Parts outboard of a joint resist
+/// motions inboard with the inertia that is left when the joint itself can move.
 class Articulation {
  public:
   Articulation(const std::vector<int>& parents, const Model& model)
@@ -89,7 +72,8 @@ class Articulation {
     }
   }
 
-  /// What resists others is less by what this coordinate's own motion, with the inertia of its rotor, takes up.
+  /// Reduces the inertia at a node by the part that this coordinate's own motion takes up, with the inertia of its
+  /// rotor.
   void yield_along(const Vector6& column, int j, int component, int node) {
     const Vector6 force = articulated_[node] * column;
     const double resisting = column.dot(force) + rotor(j, component);
@@ -107,7 +91,7 @@ class Articulation {
     return out;
   }
 
-  /// Those that are free, and move something themselves.
+  /// The components that are free, and that have inertia of their own.
   std::vector<int> free_components(int j, const Columns& columns, int node) const {
     const double mass = locked_[node].topLeftCorner<3, 3>().trace(),
                  inertia = locked_[node].bottomRightCorner<3, 3>().trace();
@@ -123,13 +107,14 @@ class Articulation {
     return free;
   }
 
-  /// The one of the columns that moves most in a motion that is without inertia once joints outboard yield; -1: none.
+  /// The column that moves most in a motion without inertia, when joints outboard can move. -1: there is no such
+  /// motion.
   int dependent_of(const Columns& columns, const Square& rotors, int node) const {
     const Square locked = Square(columns.transpose() * locked_[node] * columns) + rotors;
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale = locked.diagonal().cwiseSqrt().cwiseInverse();
     const auto [inertias, directions] = symmetric_eigenpairs(scale.asDiagonal() * locked * scale.asDiagonal());
     const auto count = (inertias.array() > kJudgeable).count();
-    // Motions of equal inertia with joints locked.
+    // Motions that have equal inertia with other joints locked.
     const Square motions =
         scale.asDiagonal() * directions.rightCols(count) * inertias.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
     const Square yielding = Square(columns.transpose() * articulated_[node] * columns) + rotors;
@@ -143,8 +128,8 @@ class Articulation {
   const std::vector<int>& parents_;
   const Model& model_;
   std::vector<int> joint_of_;                         // per node: joint that moves it, or -1
-  std::vector<bool> leads_;                           // per coordinate: others follow it
-  std::vector<SpatialInertia> articulated_, locked_;  // per node: of what is outboard, if joints yield and if not
+  std::vector<bool> leads_;                           // per coordinate: whether others follow it
+  std::vector<SpatialInertia> articulated_, locked_;  // per node: all outboard, joints movable or locked
   std::vector<int> dependent_;
   std::vector<double> inertias_;  // per coordinate
 };

@@ -15,17 +15,18 @@
 namespace flexarm {
 namespace {
 
-/// Ways of the centre of mass that are round-off of a table of numbers, relative to the section's size.
+/// Displacements of the centre of mass that are round-off of a table of numbers, relative to the section's size.
 constexpr double kCentroidTolerance = 1e-6;
 
-/// Element counts for the frequency rule and largest turning per element [rad], by order.
+/// For each order: number of elements by the frequency rule, and largest turning per element [rad]. See
+/// automatic_element_count().
 constexpr int kFrequencyElements[] = {0, 45, 9, 5, 3};
 constexpr double kTurningPerElement[] = {0, 0.139, 1.05, 1.58, 3.15};
 
 /// More elements than any mesh may have.
 constexpr int kTooMany = 1000000000;
 
-/// The next whole number up to that.
+/// `count` rounded up to a whole number, at most kTooMany.
 int rounded_up(double count) {
   return static_cast<int>(std::min<double>(std::ceil(count), kTooMany));
 }
@@ -36,8 +37,8 @@ double at_node(double from, double to, int order, int i) {
   return 0.5 * (1 - xi) * from + 0.5 * (1 + xi) * to;
 }
 
-/// Element borders: both ends, piece borders exactly where they are (a kink is looked for there), and attachments that
-/// do not coincide with one of them.
+/// Increasing arc lengths of the borders between elements: both ends, the borders of pieces exactly where they are (a
+/// kink is looked for there), and attachments that do not coincide with any of these.
 std::vector<double> borders(const Centreline& centreline, const std::vector<double>& attachments) {
   std::vector<double> fixed = centreline.piece_ends(), sorted = attachments, all;
   fixed.push_back(0);
@@ -74,7 +75,7 @@ std::vector<int> distribute(int count, const std::vector<double>& demand) {
   return elements;
 }
 
-/// Numbers of input that are good each by itself may make a section too stiff, too weak or too heavy to compute with.
+/// Input numbers that are valid one by one may make a section too stiff, too weak or too heavy to compute with.
 void require_measurable(const SectionProperties& section, double length) {
   const auto is_measurable = [](double value) { return value > 0 && std::isfinite(value); };
   const Vector6 diagonal = section.stiffness.diagonal();
@@ -86,7 +87,7 @@ void require_measurable(const SectionProperties& section, double length) {
         diagonal[0], diagonal[1], diagonal[2], diagonal[3], diagonal[4], diagonal[5], section.mass));
 }
 
-/// Of each interval between borders.
+/// Number of elements for each interval between borders, if the beam leaves it to flexarm.
 std::vector<int> automatic_element_counts(int order, const Centreline& centreline, const std::vector<double>& border,
                                           const std::vector<double>& length) {
   const int straight = automatic_element_count(order, 0);
@@ -99,12 +100,12 @@ std::vector<int> automatic_element_counts(int order, const Centreline& centrelin
   return counts;
 }
 
-/// The same, as the beam asks for.
+/// Number of elements for each interval between borders.
 std::vector<int> element_counts(const scene::BeamDescription& beam, const Centreline& centreline,
                                 const std::vector<double>& border, const std::vector<double>& length, int most) {
   const auto require_room = [&](double sum) {
     if (sum > most)
-      throw std::invalid_argument(fmt::format("its mesh would have {}{} elements, and there is room for {}",
+      throw std::invalid_argument(fmt::format("its mesh would have {}{} elements, but at most {} are possible here",
                                               sum < kTooMany ? "" : "more than ", std::min<double>(sum, kTooMany),
                                               most));
   };
@@ -124,7 +125,7 @@ int automatic_element_count(int order, double turning) {
 }
 
 int BeamMesh::node_at(double arc_length) const {
-  // Arc lengths ascend; of the two nodes of a kink the first is meant, and of two that are equally near.
+  // Arc lengths ascend. Of the two nodes of a kink, and of two nodes that are equally near, the first one is taken.
   const auto first_from = [&](double s) {
     return std::lower_bound(nodes.begin(), nodes.end(), s,
                             [](const MeshNode& node, double value) { return node.arc_length < value; });
@@ -150,8 +151,8 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
     require_measurable(section, centreline.length());
     if ((section.center_of_mass - mesh.centroid).norm() > kCentroidTolerance * section.radius)
       throw std::invalid_argument(
-          fmt::format("its centre of mass must be in the same place in all sections, y = {}, z = {} as at the first "
-                      "station, and at {} m is y = {}, z = {}",
+          fmt::format("its centre of mass must be in the same place in all sections: it is y = {}, z = {} at the "
+                      "first station, but at {} m it is y = {}, z = {}",
                       mesh.centroid[1], mesh.centroid[2], s, section.center_of_mass[1], section.center_of_mass[2]));
   }
   mesh.order = beam.order;
@@ -173,7 +174,7 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (k > 0 && centreline.is_kink(border[k])) last = add_node(border[k], false, last);
     for (int e = 0; e < counts[k]; ++e) {
-      // The interval's end exactly: a bit beyond a kink the section has another frame.
+      // The last element ends exactly at the interval's end: slightly beyond a kink, the section has another frame.
       const double from = border[k] + length[k] * e / counts[k];
       const double to = e + 1 < counts[k] ? border[k] + length[k] * (e + 1) / counts[k] : border[k + 1];
       MeshElement element;
@@ -205,7 +206,7 @@ BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element
     arc_length[i] = mesh.nodes[element.nodes[i]].arc_length;
   }
   const LocalRotations<Nodes> local(orientation);
-  // Weights and derivatives in arc length of the reference line, which is what stiffness and inertia are per length of.
+  // Stiffness and inertia are per length of the reference line, so weights and derivatives are in its arc length, too.
   const auto point = [&](double xi, double weight, NodalValues<Nodes>& shape, NodalValues<Nodes>& derivative,
                          double& out_weight) {
     const ShapeFunctions<Nodes> functions = lagrange<Nodes>(xi);

@@ -37,12 +37,12 @@ struct BeamMesh {
 
 /// Number of elements of the given order for `elements="auto"`.
 ///
-/// Rule: the fewest elements for which the first four clamped-free and the first four pinned-pinned bending frequencies
-/// of a slender uniform straight beam are within 1 % of the exact ones, and the static tip displacement of a circular
-/// arc of a quarter to half a turn, under a tip force in any direction, within 1 %. The latter sets the largest turning
-/// of tangent and section per element; the limit was measured at the worst arc. Both are held by tests (test/reference,
-/// automatic mesh). An element border is also placed where pieces of the centreline meet and where loads and joints
-/// attach.
+/// Rule: the fewest elements with which two errors are at most 1 %. First, the errors of the first four clamped-free
+/// and the first four pinned-pinned bending frequencies of a slender uniform straight beam. Second, the error of the
+/// static tip displacement of a circular arc of a quarter to half a turn, under a tip force in any direction. The
+/// second one sets the largest turning of tangent and section per element; the limit was measured at the worst arc.
+/// Tests check both (test/reference, automatic mesh). There are further element borders where pieces of the centreline
+/// meet, and where loads and joints attach.
 int automatic_element_count(int order, double turning);
 
 /// Meshes a link with element borders at `attachments` (arc lengths), piece borders and kinks.
@@ -51,8 +51,8 @@ int automatic_element_count(int order, double turning);
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
                    const std::vector<double>& attachments, int most = scene::kMostBeamElements);
 
-/// Constant data of an element from its nodes' undeformed poses; node indices, points' and blocks' offsets are left to
-/// the caller.
+/// Constant data of an element, from its nodes' undeformed poses. The caller sets node indices and the offsets of
+/// points and blocks.
 template <int Nodes>
 BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element, const scene::BeamDescription& beam);
 

@@ -7,11 +7,11 @@
 namespace flexarm {
 namespace {
 
-constexpr double kKinkAngle = 1e-9;   // rad; below it two tangents count as one
-constexpr double kLargestGap = 1e-6;  // of the length; below it a line counts as closed
+constexpr double kKinkAngle = 1e-9;   // rad; a smaller angle between tangents is no kink
+constexpr double kLargestGap = 1e-6;  // relative to the length; a line with a smaller gap is closed
 
-/// Maps the direction of `from` onto that of `to`, which is not opposite: Eigen's FromTwoVectors provides for that by a
-/// singular value decomposition, which takes long to compile.
+/// The rotation that maps the direction of `from` onto that of `to`, which must not be opposite. (Eigen's
+/// FromTwoVectors also covers opposite directions, by a singular value decomposition, which takes long to compile.)
 Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
   const Vector3 a = from.normalized(), b = to.normalized();
   const double twice_half_cosine = std::sqrt((1 + b.dot(a)) * 2);
@@ -28,7 +28,7 @@ Quaternion first_frame(const Vector3& tangent, const std::optional<Vector3>& sec
     if (y.norm() < 1e-9 * section_y->norm())
       throw std::invalid_argument("section y axis is parallel to the centreline");
   } else {
-    // The link's y axis unless the line runs along it, then z: gives the link frame itself for a beam along x.
+    // The link's y axis, or z if the line runs along y. For a beam along x this gives the link frame itself.
     const Vector3 guess = std::abs(tangent.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitZ();
     y = guess - guess.dot(tangent) * tangent;
   }

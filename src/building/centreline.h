@@ -10,22 +10,23 @@
 
 namespace flexarm {
 
-/// Piecewise line/arc curve in the link frame, s in [0, length()]. The section frame has x along the tangent; along an
-/// arc it turns with the tangent, `twist` turns it about the tangent, at a kink it takes the smallest rotation that
-/// maps one tangent onto the next.
+/// A curve of lines and arcs in the link frame, s in [0, length()]. The section frame has x along the tangent. Along an
+/// arc it turns with the tangent, and `twist` turns it about the tangent. At a kink it turns by the smallest rotation
+/// that maps one tangent onto the next.
 class Centreline {
  public:
   /// @throws std::invalid_argument for degenerate pieces (no length, centre not equidistant, reversal at a kink).
   Centreline(const std::vector<scene::CentrelinePiece>& pieces, const std::optional<Vector3>& section_y);
 
   double length() const { return pieces_.back().end; }
-  /// Section pose in the link frame; at a piece border that of the earlier piece if `before`, else of the later one.
+  /// Section pose in the link frame. At a border of pieces it is that of the earlier piece if `before`, else of the
+  /// later one.
   Pose at(double s, bool before = true) const;
   /// Arc lengths of the ends of all pieces (the last is length()).
   std::vector<double> piece_ends() const;
-  /// True where the tangent jumps at s (a piece border).
+  /// Whether the tangent jumps at s (a piece border).
   bool is_kink(double s) const;
-  /// True where the line ends at the place where it begins, within 1e-6 of its length.
+  /// Whether the line ends where it begins, within 1e-6 of its length.
   bool is_closed() const;
   /// Arc length of the point of the line nearest to `point` (link frame).
   double nearest(const Vector3& point) const;

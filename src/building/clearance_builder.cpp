@@ -14,8 +14,8 @@
 namespace flexarm {
 namespace {
 
-/// Length of a pin or a block for which none is given, in plays, and in radii of the pin. Fits of machines have
-/// diameters of some 1000 plays, and bearings are about as long.
+/// Length of a pin or a block if the scene gives none: in plays, or in radii of the pin. Fits of machines have
+/// diameters of some 1000 plays, and bearings are about as long as their diameters.
 constexpr double kLengthInPlays = 1000, kLengthInRadii = 2;
 
 class Clearance final : public ContactElement {
@@ -24,14 +24,14 @@ class Clearance final : public ContactElement {
   const char* kind() const override { return "clearance"; }
 };
 
-/// Pin, ball or block on the child, and the hole in the parent, in frames at the joint whose z is along its axis.
+/// A pin, ball or block on the child, and the hole in the parent, in frames at the joint with z along its axis.
 struct Fit {
   std::vector<Vector3> points;
   std::vector<ContactShape> holes;
-  double at_a_time = 1;  ///< points that are pressed across the axis where nothing tilts
+  double at_a_time = 1;  ///< number of points that are pressed across the axis if nothing tilts
 };
 
-/// What is beyond a wall, whose normal looks back.
+/// The half-space beyond a wall, with a normal that points back.
 ContactShape wall(const Vector3& direction, double distance) {
   ContactShape out;
   out.kind = HalfSpace{};
@@ -73,7 +73,7 @@ Fit fit_of(const scene::ClearanceDescription& clearance) {
   return fit;
 }
 
-/// Turns z into an axis, and x into one of the frame's own where these are normal to it.
+/// Rotation of z to an axis, and of x to an axis of the frame if there is one normal to it.
 Quaternion axes_along(const Vector3& axis) {
   const Vector3 guess = std::abs(axis.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
   Matrix3 axes;
@@ -91,7 +91,7 @@ class ClearanceBuilder {
     const scene::JointDescription& joint = clearance.joint;
     const Attachment bearing = frame_of(joint.parent, joint.origin, joint.axis);
     Attachment pin = frame_of(joint.child, joint.child_origin, joint.axis);
-    // Of a joint that closes a loop position 0 is how its links stand at the start.
+    // If the joint closes a loop, its position 0 is the relative pose of its links at the start.
     if (clearance.closes_loop)
       pin.offset.orientation =
           pose_of(pin.node).orientation.conjugate() * pose_of(bearing.node).orientation * bearing.offset.orientation;
@@ -109,7 +109,7 @@ class ClearanceBuilder {
     for (ContactShape& shape : surface.shapes) shape.place = bearing.offset * shape.place;
     const double inside = deepest_start(model_, stations, surface);
     if (inside > clearance.radius)
-      throw ModelError(fmt::format("{}starts {:.6g} m beyond its play of {:.6g} m; expected at most as much", where,
+      throw ModelError(fmt::format("{}penetrates by {:.6g} m at the start; expected at most its play, {:.6g} m", where,
                                    inside, clearance.radius));
     return std::make_shared<Clearance>(std::vector{joint.child, joint.parent}, stations, surface,
                                        law_of(clearance, fit.at_a_time, inside), false, joint.name);
@@ -124,7 +124,7 @@ class ClearanceBuilder {
 
   NodePose pose_of(int node) const { return node < 0 ? NodePose() : model_.nodes[node]; }
 
-  /// Of a beam its whole [kg].
+  /// Mass of a link's body; of a beam, the mass of the whole beam [kg].
   double mass_of_link(const std::string& name) const {
     const LinkFrame& link = model_.links[plan_.links[name]];
     return link.beam ? link.beam->mass : mass_of_body(model_, link.frame.node);
@@ -136,8 +136,8 @@ class ClearanceBuilder {
     request.restitution = clearance.restitution;
     request.friction = clearance.friction;
     ContactLaw law = law_of_points(request, plan_.scene.integrator.step);
-    // What is as soft as the step needs it is kept from giving way by more than the play. A stiffness that is given
-    // is the law.
+    // A stiffness that is chosen to suit the step may be soft, so the depth keeps it from giving way by more than the
+    // play. A given stiffness is the law.
     if (!clearance.stiffness) law.depth = clearance.radius;
     allow_start(law, clearance.stiffness ? 0 : inside);
     return law;

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = ClosureConstraint::Kind;
 
-/// Makes constraints from vectors in the world, at the start.
+/// Makes constraints from vectors in world axes, at the start.
 class ConstraintMaker {
  public:
   ConstraintMaker(const Pose& parent, const Pose& child, LoopClosure& closure)
@@ -24,7 +24,7 @@ class ConstraintMaker {
   void gap(const Vector3& normal) {
     closure_.constraints.push_back({Kind::Gap, parent_.orientation.conjugate() * normal, Vector3::Zero(), 0});
   }
-  /// The angle between a direction of the child and a normal of the parent stays as it is.
+  /// Keeps the angle between a direction of the child and a normal of the parent constant.
   void direction(const Vector3& of_child, const Vector3& normal) {
     closure_.constraints.push_back({Kind::Direction, parent_.orientation.conjugate() * normal,
                                     child_.orientation.conjugate() * of_child, of_child.dot(normal)});
@@ -35,7 +35,8 @@ class ConstraintMaker {
   LoopClosure& closure_;
 };
 
-/// What a kind of joint holds, about its axis (world, at the start); false where that is not quadratic.
+/// Adds the constraints of a kind of joint, about its axis (world axes, at the start). Returns false if these are not
+/// quadratic.
 bool add_constraints(const scene::JointDescription& joint, const Quaternion& frame, ConstraintMaker& maker) {
   using scene::JointKind;
   const Vector3 axis = frame * joint.axis.normalized(), second = frame * joint.axis2.normalized();
@@ -71,7 +72,7 @@ Eigen::Index rank_of(const ConstraintRows& jacobian) {
   return static_cast<Eigen::Index>(rank);
 }
 
-/// What is not held otherwise: unknowns without multipliers.
+/// Which scalars can move freely: unknowns that are no multipliers.
 std::vector<bool> free_scalars(const DegreesOfFreedom& dof) {
   std::vector<bool> is_free(static_cast<std::size_t>(dof.scalar_count), false);
   for (int scalar = 0; scalar < dof.first[dof.variable_of_closure(0)]; ++scalar)
@@ -81,13 +82,14 @@ std::vector<bool> free_scalars(const DegreesOfFreedom& dof) {
 
 // ---------------------------------------------------------------- dead points
 
-/// Scaled motion by which derivatives are found, whose error is its square.
+/// Size of the scaled motion for difference quotients, whose error is its square.
 constexpr double kStep = 1e-4;
-/// Second derivatives of scaled constraints beside the square of a motion: less is what the scene's rounded numbers
-/// leave.
+/// Second derivatives of scaled constraints, relative to the square of a motion. Smaller ones may result from rounded
+/// numbers in the scene.
 constexpr double kCurvature = 1e-5;
 
-/// What of a general motion the constraints allow, to first order; its largest component is 1.
+/// The part of a general motion that the constraints allow to first order. Its largest component is 1; zero if there is
+/// none.
 Eigen::VectorXd allowed_motion(const Eigen::MatrixXd& block) {
   const Eigen::VectorXd wanted = general_vector(block.cols());
   const Eigen::VectorXd motion = wanted - smallest_least_squares(block, block * wanted, kIndependent);
@@ -96,7 +98,7 @@ Eigen::VectorXd allowed_motion(const Eigen::MatrixXd& block) {
                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(motion.size()));
 }
 
-/// With joints moved by the scaled `motion` of the scalars.
+/// The model after its joints have moved by `motion`, which has an entry for each scalar.
 Model moved(Model model, const DegreesOfFreedom& dof, const Eigen::VectorXd& motion) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const int variable = dof.variable_of_joint(static_cast<int>(j));
@@ -113,7 +115,7 @@ Model moved(Model model, const DegreesOfFreedom& dof, const Eigen::VectorXd& mot
   return model;
 }
 
-/// Second derivatives of all constraints along a motion.
+/// Second derivatives of all scaled constraints along a scaled motion.
 Eigen::VectorXd curvatures(const Model& model, const DegreesOfFreedom& dof, const Eigen::VectorXd& motion) {
   const Eigen::VectorXd way = kStep * scalar_scales(model, dof).cwiseProduct(motion);
   return (closure_jacobian(moved(model, dof, way), dof) * motion -
@@ -121,7 +123,7 @@ Eigen::VectorXd curvatures(const Model& model, const DegreesOfFreedom& dof, cons
          (2 * kStep);
 }
 
-/// Of the closure that has a row of the Jacobian.
+/// Name of the closure that has a row of the Jacobian.
 std::string name_of_row(const Model& model, int row) {
   for (const LoopClosure& closure : model.closures) {
     row -= static_cast<int>(closure.constraints.size() + closure.implied.size());
@@ -131,9 +133,10 @@ std::string name_of_row(const Model& model, int row) {
 }
 
 /// Name of a joint that closes a loop which starts at a dead point; empty if there is none. `jacobian`: of all
-/// constraints, in the columns of what is free to move. Loops that beams take part in are not judged: they give way.
-/// Where constraints depend on each other, y^T B = 0, motions of their kernel must not bend what they depend by,
-/// y^T B'(v) v = 0, or they have no second order: the loop goes some of these ways, but not all.
+/// constraints, with the columns of free scalars. Loops with beams are not judged, since these give way. If constraints
+/// depend on each other, y^T B = 0, then motions v that they allow, B v = 0, must have y^T B'(v) v = 0. Otherwise v
+/// cannot go on to second order: the loop can go in some of these directions, but not in all. (docs/notes/joints.md
+/// 3.1)
 std::string loop_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const ConstraintRows& jacobian) {
   const int first_joint = dof.first[dof.variable_of_joint(0)];
   std::vector<ConstraintGroup> groups = independent_groups(jacobian);
@@ -167,15 +170,18 @@ LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, cons
                          Attachment parent, Attachment child, const Pose& frame) {
   const std::string where = at(joint.location, "<loop_joint> '" + joint.name + "'");
   if (joint.damping != 0 || joint.friction != 0 || joint.friction_law.coefficient != 0 || joint.limits)
-    throw ModelError(where +
-                     "closes a loop of rigid links, where it has no coordinate that could have damping, friction or "
-                     "limits (type 'continuous' has none): put them on another joint of the loop, or cut it there");
+    throw ModelError(
+        where +
+        "closes a loop of rigid links, so that it has no coordinate and cannot have damping, friction or limits "
+        "(type 'continuous' has none): put them on another joint of the loop, or make another joint the "
+        "loop joint");
   if (parent.node == child.node)
-    throw ModelError(where + (joint.parent == joint.child && plan.meshes[plan.links[joint.child]]
-                                  ? "both places are the same section of link '" + joint.child +
-                                        "': join two places of its line, or let the line end where it begins (within "
-                                        "1e-6 of its length) for a ring"
-                                  : std::string("both places belong to the same rigid body")));
+    throw ModelError(where +
+                     (joint.parent == joint.child && plan.meshes[plan.links[joint.child]]
+                          ? "both places are the same section of link '" + joint.child +
+                                "': connect two different places of its line; for a ring, let the line end where "
+                                "it begins (within 1e-6 of its length)"
+                          : std::string("both places belong to the same rigid body")));
   LoopClosure closure;
   closure.is_reversed = child.node < 0;
   if (closure.is_reversed) std::swap(parent, child);
@@ -187,8 +193,8 @@ LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, cons
   ConstraintMaker maker(mechanism.pose_of(parent.node), mechanism.pose_of(child.node), closure);
   if (!add_constraints(joint, frame.orientation, maker))
     throw ModelError(where +
-                     "a joint of this kind cannot close a loop of rigid links: cut the loop at another joint, or let a "
-                     "flexible link's free end be one of the joined places");
+                     "a joint of this kind cannot close a loop of rigid links: make another joint of the loop the loop "
+                     "joint, or attach it to the free end of a flexible link");
   return closure;
 }
 
@@ -206,18 +212,19 @@ SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mech
                                      [](const Coordinate& coordinate) { return coordinate.motion >= 0; });
   if (rank == std::count(is_free.begin(), is_free.end(), true) && !is_driven)
     throw ModelError(at_loop_joint(plan.scene, model.closures.front().name) +
-                     "it and other loop joints leave the mechanism no motion: nothing is left to compute");
+                     "with this and other loop joints the mechanism cannot move: there is nothing to compute");
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.sticks) is_free[dof.scalar_of(coordinate)] = false;
   if (rank_of(with_columns(jacobian, is_free)) < rank)
-    throw ModelError(at_loop_joint(plan.scene, model.closures.front().name) +
-                     "more joints of the rigid loop that it closes may stick (<friction law=\"coulomb\">) than it has "
-                     "freedoms, and the force that holds "
-                     "each would be undetermined: give some of them the law 'smooth'");
+    throw ModelError(
+        at_loop_joint(plan.scene, model.closures.front().name) +
+        "in the rigid loop that it closes, more joints may stick (<friction law=\"coulomb\">) than the loop "
+        "has degrees of freedom, so that their friction forces would be undetermined: give some of them "
+        "the law 'smooth'");
   if (const std::string loop = loop_at_dead_point(model, dof, jacobian); !loop.empty())
     throw ModelError(at_loop_joint(plan.scene, loop) +
-                     "its loop starts at a dead point, where it may go on in more than one way, and nothing says in "
-                     "which: start it beside that by <initial>");
+                     "its loop starts at a dead point, from which it can move in more than one way: start it a little "
+                     "away from there, by <initial>");
   std::size_t row = 0;
   for (LoopClosure& closure : model.closures) {
     std::vector<ClosureConstraint> all;

@@ -10,14 +10,14 @@
 namespace flexarm {
 namespace {
 
-/// A row that is zero nearly everywhere.
+/// A row with few entries that are not zero.
 class SparseRow {
  public:
   double& operator[](int scalar) { return entries_[scalar]; }
   void add(int first, const Vector6& values) {
     for (int k = 0; k < 6; ++k) entries_[first + k] += values[k];
   }
-  /// Six entries, which become zero.
+  /// Returns six entries, and sets them to zero.
   Vector6 take(int first) {
     Vector6 values = Vector6::Zero();
     const auto begin = entries_.lower_bound(first), end = entries_.lower_bound(first + 6);
@@ -31,7 +31,7 @@ class SparseRow {
   std::map<int, double> entries_;
 };
 
-/// Folds the entries of slaves in a row into their masters, from the leaves to the root.
+/// Folds the entries of slaves in a row into those of their masters, from the leaves to the root.
 class RowFolder {
  public:
   RowFolder(const Model& model, const DegreesOfFreedom& dof)
@@ -43,7 +43,7 @@ class RowFolder {
     }
   }
 
-  /// `nodes`: those that the row has entries of.
+  /// `nodes`: the nodes for which the row has entries.
   void fold(const std::vector<int>& nodes, SparseRow& row) {
     std::set<int> pending;  // joints, which are numbered from the root to the leaves
     const auto add_node = [&](int node) {
@@ -83,7 +83,7 @@ class RowFolder {
 
  private:
   void fold_slide(int j, const Vector6& g, int released, SparseRow& row) {
-    // Velocities of the line's nodes one by one: a slide has no other maps of velocity.
+    // Give the line's nodes unit velocities one by one, since a slide has no other map of velocities.
     const SlideLine& line = model_.slide_lines[model_.joints[j].line];
     for (const int node : line.nodes)
       for (int k = 0; k < 6; ++k) {
@@ -108,7 +108,7 @@ void for_each_constraint(const Model& model, const Visit& visit) {
       for (const ClosureConstraint& constraint : *list) visit(closure, constraint);
 }
 
-/// Per row: the length scale of a gap, 1 of a direction.
+/// Scale of each row: the length scale for a gap, 1 for a direction.
 Eigen::VectorXd constraint_scales(const Model& model) {
   std::vector<double> scales;
   for_each_constraint(model, [&](const LoopClosure&, const ClosureConstraint& constraint) {
@@ -153,7 +153,7 @@ ConstraintRows with_columns(ConstraintRows jacobian, const std::vector<bool>& is
 }
 
 std::vector<ConstraintGroup> independent_groups(const ConstraintRows& jacobian) {
-  // Sets of rows, each named by one of them (union by column).
+  // Union of rows that share a column: each set of rows is named by one of them.
   std::vector<int> above(static_cast<std::size_t>(jacobian.rows())), of_column(jacobian.cols(), -1);
   std::iota(above.begin(), above.end(), 0);
   const auto name_of = [&](int row) {
@@ -177,7 +177,7 @@ std::vector<ConstraintGroup> independent_groups(const ConstraintRows& jacobian) 
     }
     groups[group].rows.push_back(row);
   }
-  std::vector<int> place(jacobian.cols(), -1);  // of a column in its group
+  std::vector<int> place(jacobian.cols(), -1);  // index of each column in its group
   for (ConstraintGroup& group : groups) {
     for (const int row : group.rows)
       for (Entry entry(jacobian, row); entry; ++entry)

@@ -1,5 +1,5 @@
 #pragma once
-/// Loops of rigid links: their constraints as a matrix (internal to building/).
+/// The constraints of loops of rigid links as a matrix (internal to building/).
 
 #include <vector>
 
@@ -10,24 +10,25 @@
 
 namespace flexarm {
 
-/// Rows: the constraints of all closures, kept ones then implied ones, closure by closure.
+/// One row for each constraint: closure by closure, first the kept constraints and then the implied ones.
 using ConstraintRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Scaled constraints are independent if a pivot is larger than this part of the largest one of its group.
+/// Scaled constraints are independent if their pivots are larger than this part of the largest one in the group.
 constexpr double kIndependent = 1e-6;
 
-/// Per scalar of the nodes and joints: the model's length scale where it is a displacement, 1 where it is a rotation.
+/// For each scalar of nodes and joints: the model's length scale if it is a displacement, 1 if it is a rotation.
 Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof);
 
-/// Derivatives of the constraints' values with respect to the scalars of `dof` at the model's start, both in parts of
-/// their scales; columns of slaves and of following coordinates are folded into their masters' and zero.
+/// Derivatives of the constraints' values by the scalars of `dof`, at the model's start. Values and scalars are divided
+/// by their scales. Columns of slaves and of following coordinates are folded into those of their masters, and are then
+/// zero.
 ConstraintRows closure_jacobian(const Model& model, const DegreesOfFreedom& dof);
 
-/// The other columns are zero.
+/// Sets the other columns to zero.
 ConstraintRows with_columns(ConstraintRows jacobian, const std::vector<bool>& is_kept);
 
-/// Rows that share columns, directly or through others, and what is not zero of them. A mechanism of many loops has as
-/// many small groups, unless they hang together.
+/// Rows that share columns, directly or through other rows, and their entries that are not zero. A mechanism of many
+/// loops has many small groups, unless its loops are connected.
 struct ConstraintGroup {
   std::vector<int> rows, columns;
   Eigen::MatrixXd block;

@@ -19,27 +19,27 @@
 namespace flexarm {
 namespace {
 
-/// Of sizes: depth beyond which a contact gives way no further.
+/// Depth beyond which a contact gives way no further, relative to sizes.
 constexpr double kContactDepth = 0.1;
-/// Radius of gyration of a ball, of its own.
+/// Radius of gyration of a ball, relative to its radius.
 constexpr double kTurnedLever = 0.63;
-/// Most stations between both ends of an element.
+/// Most intervals between the stations along an element.
 constexpr int kMostSpans = 8;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A link or a ground, as it touches others.
+/// One side of a contact: a link or a ground.
 struct Side {
   std::string name;
   const scene::LinkDescription* link = nullptr;  // null: a ground
   double mass = kInfinity;                       // [kg]
-  double size = kInfinity;                       // smallest half width of what it touches with [m]
-  bool is_fixed = false;                         // in the world
-  std::vector<ContactSurface> surfaces;          // of each node that has shapes
-  std::vector<ContactStations> tubes;            // of each element of a beam
+  double size = kInfinity;                       // smallest half width of its shapes [m]
+  bool is_fixed = false;                         // to the world
+  std::vector<ContactSurface> surfaces;          // for each node that has shapes
+  std::vector<ContactStations> tubes;            // for each element of a beam
 };
 
-/// Those of a <collision>; a mesh may have several.
+/// The shapes of a <collision>; a mesh may have several.
 std::vector<ContactShape> shapes_of(const scene::VisualDescription& collision, const Pose& frame,
                                     const scene::LinkDescription& link) {
   const Pose place = frame * collision.origin;
@@ -102,7 +102,7 @@ class ContactBuilder {
     side.is_fixed = plan_.links[link.name] == plan_.tree.root;
     bool all_fixed = true;
     for (const scene::VisualDescription& collision : link.collisions) {
-      // Nobody has to have the meshes of links that touch nothing.
+      // The mesh files of links that touch nothing need not exist.
       if (std::holds_alternative<scene::MeshShape>(collision.shape) && !is_meant(link.name)) continue;
       const Attachment frame = attachment(plan_, model_, link.name, collision.origin.position);
       all_fixed = all_fixed && frame.node < 0;
@@ -122,7 +122,7 @@ class ContactBuilder {
     if (node >= 0) side.mass = mass_of_body(model_, node);
   }
 
-  /// A tube of the section's largest radius along the nodes' line: stations at even distances.
+  /// Adds a tube of the section's largest radius along the line of the nodes, with stations at equal distances.
   void add_tube(int index, Side& side) const {
     const LinkFrame& link = model_.links[index];
     side.mass = link.beam->mass;
@@ -151,7 +151,8 @@ class ContactBuilder {
   void find_neighbours() {
     for (const auto* joints : {&scene_.joints, &scene_.loop_joints})
       for (const scene::JointDescription& joint : *joints)
-        // What is fixed in the world is one body only where nothing moves against it.
+        // Joined links are neighbours, which touch only if a <contact> names both. A floating joint does not make
+        // neighbours, since its link moves freely.
         if (joint.kind != scene::JointKind::Floating) add_neighbours(joint);
     for (const scene::ClearanceDescription& clearance : scene_.clearances) add_neighbours(clearance.joint);
   }
@@ -162,7 +163,7 @@ class ContactBuilder {
     joined_.insert(std::minmax(plan_.links[joint.parent], plan_.links[joint.child]));
   }
 
-  /// The node that a link is fixed to; of a beam its first one, of what is fixed in the world -1.
+  /// The node to which a link is fixed; of a beam, its first node; -1: the world.
   int body_of(const std::string& link) const { return model_.links[plan_.links[link]].frame.node; }
 
   bool are_neighbours(const Side& first, const Side& second) const {
@@ -172,7 +173,7 @@ class ContactBuilder {
            joined_.count(std::minmax(plan_.links[first.name], plan_.links[second.name])) > 0;
   }
 
-  /// Whether any pair can be one with this link.
+  /// Whether any <contact> may apply to this link.
   bool is_meant(const std::string& link) const {
     return std::any_of(scene_.contacts.begin(), scene_.contacts.end(), [&](const scene::ContactPair& pair) {
       return pair.first == link || pair.second == link || pair.first == scene::kAllBodies ||
@@ -180,7 +181,7 @@ class ContactBuilder {
     });
   }
 
-  /// How many sides of a pair are named; -1: it does not mean these.
+  /// How many of the two sides a pair names; -1: the pair does not apply to them.
   static int named_of(const scene::ContactPair& pair, const Side& first, const Side& second) {
     const auto named = [](const std::string& name, const Side& side) {
       return name == side.name ? 1 : name == scene::kAllBodies ? 0 : -1;
@@ -191,7 +192,8 @@ class ContactBuilder {
     return best;
   }
 
-  /// Null: none. Of those that name as much of a pair a <no_contact> counts, then the first one in the file.
+  /// The <contact> that applies to two sides; null: none. The one that names more sides counts. Of those that name
+  /// equally many, a <no_contact> counts before a <contact>, and then the first one in the file.
   const scene::ContactDescription* contact_of(std::size_t i, std::size_t j) const {
     const Side &first = sides_[i], &second = sides_[j];
     const scene::ContactDescription* contact = nullptr;
@@ -222,7 +224,7 @@ class ContactBuilder {
     const double inverse = 1 / stations.mass + 1 / shapes.mass;
     const scene::SurfaceHints hints = hints_of(stations, shapes);
     LawRequest request{inverse > 0 ? 1 / inverse : mass_of(model_), at_a_time, contact.stiffness};
-    // A hint makes it softer alone: Gazebo's own steps bear more than what they can follow.
+    // A hint may only make the contact softer: Gazebo accepts stiffnesses that its steps cannot resolve.
     request.softest = hints.stiffness.value_or(kInfinity);
     request.restitution = contact.restitution;
     request.friction = contact.friction.value_or(hints.friction.value_or(0));
@@ -235,7 +237,7 @@ class ContactBuilder {
     return law;
   }
 
-  /// Combines both surfaces as Gazebo does: the smaller friction, and stiffnesses in series.
+  /// Combines the hints of both surfaces like Gazebo: the smaller friction, and stiffnesses in series.
   scene::SurfaceHints hints_of(const Side& one, const Side& other) const {
     scene::SurfaceHints out;
     for (const Side* side : {&one, &other}) {
@@ -262,13 +264,13 @@ class ContactBuilder {
     if (!first.tubes.empty() && !second.tubes.empty()) return join_lines_of(contact, first, second);
     if (!second.tubes.empty() && touch_line(contact, first, second)) return;
     if (!first.tubes.empty() && touch_line(contact, second, first)) return;
-    // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
-    // goes into the other.
+    // Corners need not be tested against balls: the middle of a ball is nearer to a face or an edge than to them. Of
+    // two balls, one is tested against the other.
     if (!is_ball(second) || first.surfaces.empty() || is_ball(first)) join_stations(contact, first, second);
     if (!is_ball(first) || second.surfaces.empty()) join_stations(contact, second, first);
   }
 
-  /// Names and their order alone where one is a ground.
+  /// Names and order of a pair. Indices are set for links only, not for grounds.
   LinkPair links_of(const scene::ContactDescription& contact, const Side& first, const Side& second) const {
     LinkPair out{0, 0, {first.name, second.name}, !are_in_order(contact, first, second)};
     if (out.is_reversed) std::reverse(out.names.begin(), out.names.end());
@@ -291,20 +293,21 @@ class ContactBuilder {
     join_lines_of(contact, side, side);
   }
 
-  /// Contacts of a body's points with the line of a beam. True: stations of the beam need not look for the body.
+  /// Adds contacts of a body's points with the line of a beam. Returns true if the beam's stations need not be tested
+  /// against the body.
   bool touch_line(const scene::ContactDescription& contact, const Side& body, const Side& tube) {
     if (!body.link) return false;  // a ground has no points
     const BeamLink& beam = *model_.links[plan_.links[tube.name]].beam;
     const bool is_small_ball = is_ball(body) && touches_line(body.size, beam);
     if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
     require_no_turn_grip(contact);
-    const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge goes in and out
+    const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge enters and leaves the tube
     join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size),
                    law_of(contact, body, tube, at_a_time), placed_);
     return is_small_ball;
   }
 
-  /// Those of each node or element; points on edges as near to each other as the other side is small.
+  /// Stations of each node or element. `spacing`: largest distance of points on edges, the size of the other side.
   static std::vector<ContactStations> stations_of(const Side& side, double spacing) {
     std::vector<ContactStations> out = side.tubes;
     for (const ContactSurface& surface : side.surfaces) {
@@ -325,7 +328,8 @@ class ContactBuilder {
     return out;
   }
 
-  /// As a <contact> names both sides, else as the scene has them.
+  /// Whether the sides are in the order in which the <contact> names them or, if it does not name both, in the scene's
+  /// order.
   bool are_in_order(const scene::ContactDescription& contact, const Side& first, const Side& second) const {
     if (contact.first == first.name && contact.second == second.name) return true;
     return &first < &second && !(contact.first == second.name && contact.second == first.name);
@@ -334,9 +338,10 @@ class ContactBuilder {
   void require_no_turn_grip(const scene::ContactDescription& contact) const {
     if ((contact.spinning > 0 || contact.rolling > 0) && contact.first != scene::kAllBodies &&
         contact.second != scene::kAllBodies)
-      throw ModelError(at(contact.location, "<contact>") +
-                       "spinning and rolling are of bodies' shapes: expected none where beams are touched along their "
-                       "lines");
+      throw ModelError(
+          at(contact.location, "<contact>") +
+          "spinning and rolling are for contacts of bodies' shapes: expected neither for beams, which are touched "
+          "along their lines");
   }
 
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
@@ -344,7 +349,7 @@ class ContactBuilder {
       for (const ContactSurface& surface : second.surfaces) {
         const auto& nodes = stations.nodes;
         if (std::find(nodes.begin(), nodes.end(), surface.node) != nodes.end()) continue;
-        // Stations of a tube have shares of the whole.
+        // Each station of a tube has its share of the whole (ContactStation::share), so there is no further division.
         const bool is_whole = is_ball(first) || !first.tubes.empty();
         const double at_a_time = is_whole ? 1.0 : stations.at_a_time;
         ContactLaw law = law_of(contact, first, second, at_a_time);
@@ -359,7 +364,7 @@ class ContactBuilder {
   const Model& model_;
   const scene::SceneDescription& scene_;
   std::vector<Side> sides_;
-  std::set<std::pair<int, int>> neighbours_, joined_;  // bodies, by nodes; links
+  std::set<std::pair<int, int>> neighbours_, joined_;  // bodies, by nodes; links, by indices
   ForceElementList placed_;
 };
 

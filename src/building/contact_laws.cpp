@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-/// What sticks is not stiffer than kStiffestGrip m / h^2.
+/// The stiffness of sticking friction is at most kStiffestGrip m / h^2.
 constexpr double kStiffestGrip = 16;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Shared by the builders of all kinds of contact: laws of their points, and the state at the start.
+/// What builders of all kinds of contact share: the laws of contact points, and how deep bodies overlap at the start.
 
 #include <limits>
 #include <optional>
@@ -9,30 +9,31 @@
 
 namespace flexarm {
 
-/// A start inside is at most this part of the depth beyond which a contact gives way no further.
+/// Largest overlap at the start, relative to the depth beyond which a contact gives way no further.
 constexpr double kStartInside = 0.25;
-constexpr double kThrownOut = 0.1;  // m/s
+constexpr double kThrownOut = 0.1;  // m/s; largest speed at which bodies that overlap at the start are pushed apart
 
-/// Of a contact of two bodies.
+/// The requirements for the law of a contact of two bodies.
 struct LawRequest {
-  double mass;                           ///< that a hit moves, of both: 1 / m = 1 / m1 + 1 / m2 [kg]
-  double at_a_time;                      ///< points that touch at a time
-  std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: a hit lasts kContactSteps steps
-  double softest = std::numeric_limits<double>::infinity();  ///< than which a stiffness that is not given is no higher
+  double mass;                           ///< that a hit moves: 1 / m = 1 / m1 + 1 / m2 of both bodies [kg]
+  double at_a_time;                      ///< number of points that touch at a time
+  std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: such that a hit lasts kContactSteps steps
+  double softest = std::numeric_limits<double>::infinity();  ///< bound of a stiffness that is not given [N/m]
   double restitution = 1, friction = 0;
 };
 /// Law of each point, without a depth. `step`: of the scene [s]. (docs/notes/contact.md 2, 3)
 ContactLaw law_of_points(const LawRequest& request, double step);
 
-/// Mass of a body [kg]. For a body without a mass of its own, which other bodies hold, the mass of all; infinite for
+/// Mass of a body [kg]. For a body without mass, which other bodies hold, the mass of the whole mechanism. Infinite for
 /// the world (-1).
 double mass_of_body(const Model& model, int node);
 
-/// Lets a contact start `deepest` inside [m]: its depth is such that this is kStartInside of it at most. What is deeper
-/// than that part of the depth that it has now, or would be thrown out with more than kThrownOut, is let out slowly.
+/// Lets bodies overlap by `deepest` at the start [m]: the depth is increased so that this is at most the part
+/// kStartInside of it. An overlap above this part of the depth as it was before is reduced slowly, and so is one that
+/// would push bodies apart faster than kThrownOut.
 void allow_start(ContactLaw& law, double deepest);
 
-/// How deep the deepest of all stations starts inside of the shapes; < 0: how near to them the nearest one is [m].
+/// How deep the deepest station is inside of the shapes at the start; if < 0, how near the nearest one is to them [m].
 double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface);
 
 }  // namespace flexarm

@@ -22,14 +22,14 @@ class CoordinateNames {
     for (std::size_t i = 0; i < model.coordinates.size(); ++i)
       indices_.emplace(model.coordinates[i].name, static_cast<int>(i));
   }
-  /// `where`: begins the message if there is none.
+  /// `where`: the beginning of the error message if there is no such coordinate.
   int index(const std::string& name, const std::string& where) const {
     if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
     for (const LoopClosure& closure : closures_)
       if (name.substr(0, closure.name.size()) == closure.name)
         throw ModelError(where + "joint '" + closure.name +
-                         "' closes a loop of rigid links and has no coordinate there: name another joint of the loop, "
-                         "or cut it there");
+                         "' closes a loop of rigid links and has no coordinate: name another joint of the loop, "
+                         "or make another joint the loop joint");
     throw ModelError(where + "there is no joint coordinate '" + name + "'");
   }
 
@@ -51,7 +51,7 @@ class MimicChains {
     std::size_t depth = 0;
     for (auto next = mimics_.find(mimic.joint); next != mimics_.end(); next = mimics_.find(mimic.joint)) {
       if (++depth > mimics_.size()) throw ModelError(where + "the mimicked joints form a circle");
-      const scene::Mimic above = next->second;  // it may be the same one
+      const scene::Mimic above = next->second;  // a copy, since `next` may be this very mimic
       mimic.offset += mimic.multiplier * above.offset;
       mimic.multiplier *= above.multiplier;
       mimic.joint = above.joint;
@@ -60,10 +60,10 @@ class MimicChains {
   }
 
  private:
-  std::unordered_map<std::string, scene::Mimic> mimics_;  // by joint; where known, of the coordinate at the chain's end
+  std::unordered_map<std::string, scene::Mimic> mimics_;  // by joint; if resolved, of the coordinate at the chain's end
 };
 
-/// Puts nodes where initial_released has their slaves.
+/// Places all nodes as the initial positions of their joints require.
 void place_nodes(Mechanism& mechanism) {
   Model& model = mechanism.model;
   std::vector<Pose> before;
@@ -86,7 +86,7 @@ int add_history(const TimeFunction& function, Model& model) {
   return static_cast<int>(model.histories.size()) - 1;
 }
 
-/// The coordinate's actuator, made where there is none yet.
+/// The coordinate's actuator, which is made if there is none yet.
 Actuator& actuator_of(int coordinate, Model& model) {
   int& index = model.coordinates[coordinate].actuator;
   if (index < 0) {
@@ -96,7 +96,8 @@ Actuator& actuator_of(int coordinate, Model& model) {
   return model.actuators[index];
 }
 
-/// The coordinate of an element that acts on it as on a scalar. @throws ModelError
+/// Index of a coordinate by its name, for elements that act on hinges and sliders.
+/// @throws ModelError if it is one of several coordinates of an elementary joint, or follows another coordinate
 int scalar_coordinate(const Model& model, const CoordinateNames& names, const std::string& name,
                       const std::string& where) {
   const int index = names.index(name, where);
@@ -130,9 +131,9 @@ void add_gyroscope(const ScenePlan& plan, const scene::DriveDescription& drive, 
     throw ModelError(where + "the rotor of '" + drive.coordinate +
                      "' may stick by the law 'coulomb' or have an axis, but not both");
   const Attachment parent = attachment(plan, model, joint.parent, joint.origin.position);
-  if (parent.node < 0) return;  // an axis that stands still
+  if (parent.node < 0) return;  // the axis stands still
   if (map.kind != JointMapKind::Scalar || map.master != parent.node)
-    throw ModelError(where + "the axis of a rotor is not known here, where no hinge or slider hangs on link '" +
+    throw ModelError(where + "the axis of a rotor is not known, since no hinge or slider is mounted on link '" +
                      joint.parent + "'; leave it out");
   actuator.gyroscope =
       Gyroscope{parent.node, parent.offset.orientation * *drive.axis, drive.rotor_inertia, drive.gear.value_or(1)};
@@ -160,7 +161,8 @@ void add_drive(const ScenePlan& plan, const scene::DriveDescription& drive, cons
   if (drive.axis && drive.rotor_inertia > 0) add_gyroscope(plan, drive, actuator_of(index, model), model);
 }
 
-/// Of a velocity's error the integral is what a position's error is.
+/// In velocity mode, the integral of the error is like a position error: so ki is the proportional gain, and kp the
+/// derivative gain.
 ServoLaw servo_law(const scene::ServoDescription::Gains& gains) {
   if (gains.mode == ServoMode::Velocity) return {gains.mode, gains.ki, gains.kp, 0, gains.anti_windup};
   return {gains.mode, gains.kp, gains.kd, gains.ki, gains.anti_windup};
@@ -179,7 +181,7 @@ void add_servo(const ScenePlan& plan, const scene::ServoDescription& servo, cons
   Servo& out = actuator.servo.emplace();
   out.laws.push_back(servo_law({servo.mode, servo.kp, servo.kd, servo.ki, servo.anti_windup}));
   for (const scene::ServoDescription::Gains& gains : servo.other_modes) out.laws.push_back(servo_law(gains));
-  if (servo.mode != ServoMode::Effort) out.laws.push_back(servo_law({ServoMode::Effort}));  // which needs no gains
+  if (servo.mode != ServoMode::Effort) out.laws.push_back(servo_law({ServoMode::Effort}));  // this mode needs no gains
   if (servo.set_point) out.set_point = add_history(*servo.set_point, model);
   if (servo.feedforward) out.feedforward = add_history(*servo.feedforward, model);
   if (servo.mode == ServoMode::Position)
@@ -250,11 +252,11 @@ DrivenMechanism connect_drives(const ScenePlan& plan, ClosedMechanism mechanism)
 
 namespace {
 
-/// Part of the range.
+/// Depth by which a stop gives way at most, relative to the range of the coordinate.
 constexpr double kDepth = 0.1;
-/// Where there is no range, of a radian or of the size of the mechanism.
+/// The same if there is no range: in rad, or relative to the size of the mechanism.
 constexpr double kDepthWithoutRange = 1e-4;
-/// A start beyond a stop is this part of what it gives way at most: there it is nearly linear.
+/// A start beyond a stop is at most this part of the depth, over which the stop is nearly linear.
 constexpr double kShareOfStart = 0.25;
 
 void deepen(double& give, double start) {
@@ -287,7 +289,7 @@ void set_stop_depths(Model& model) {
 
 namespace {
 
-/// The coordinate's actuator, which it has.
+/// The actuator of a coordinate, which must have one.
 Actuator& actuator_named(const std::string& coordinate, Model& model) {
   const auto is_its = [&](const Actuator& actuator) {
     return model.coordinates[actuator.coordinate].name == coordinate;
@@ -295,13 +297,14 @@ Actuator& actuator_named(const std::string& coordinate, Model& model) {
   return *std::find_if(model.actuators.begin(), model.actuators.end(), is_its);
 }
 
-/// `where`: begins the message if the inertia is not known.
+/// `where`: the beginning of the error message if the inertia is not known.
 double damper(double ratio, double stiffness, double inertia, const std::string& where) {
   if (inertia > 0) return 2 * ratio * std::sqrt(stiffness * inertia);
   throw ModelError(
       where +
-      "damping_ratio needs the inertia that the joint moves, which is not known in mechanisms with loops, on "
-      "slides, and where other joints follow it; give the damping itself, that of the joint's <dynamics> or "
+      "damping_ratio needs the inertia that the joint moves, which is not known in mechanisms with loops (except "
+      "in loops of rigid links), on slides, and where other joints follow it; give the damping itself, that of the "
+      "joint's <dynamics> or "
       "of the gear");
 }
 
@@ -312,7 +315,12 @@ void set_damping_ratios(const scene::SceneDescription& scene, const std::vector<
   if (std::none_of(scene.springs.begin(), scene.springs.end(), has_ratio) &&
       std::none_of(scene.drives.begin(), scene.drives.end(), has_ratio))
     return;
-  const std::vector<double> inertias = articulated_inertias(node_parents, model);
+  std::vector<double> inertias = articulated_inertias(node_parents, model);
+  std::vector<bool> is_asked(inertias.size(), false);
+  for (const Actuator& actuator : model.actuators) is_asked[actuator.coordinate] = true;
+  const std::vector<InLoops> in_loops = loop_inertias(node_parents, model, is_asked);
+  for (std::size_t i = 0; i < inertias.size(); ++i)
+    if (in_loops[i].inertia > 0) inertias[i] = in_loops[i].inertia;
   const auto set = [&](const auto& description, Elasticity& elasticity, int coordinate, const char* element) {
     elasticity.damping = damper(description.damping_ratio, elasticity.stiffness, inertias[coordinate],
                                 at(description.location, element));

@@ -6,14 +6,14 @@
 namespace flexarm {
 namespace {
 
-/// Two directions that span the plane normal to `axis`: the frame's own x and y where the axis is z.
+/// Two directions that span the plane normal to `axis`. If the axis is z, they are the frame's own x and y.
 std::pair<Vector3, Vector3> plane_axes(const Vector3& axis) {
   const Vector3 guess = std::abs(axis.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
   const Vector3 first = (guess - guess.dot(axis) * axis).normalized();
   return {first, axis.cross(first)};
 }
 
-/// `offset`: of the moved frame from the joint's origin at coordinate 0.
+/// `offset`: from the joint's origin to the moved frame, at coordinate 0.
 JointMap scalar_map(const Vector3& translation, const Vector3& rotation, const Vector3& offset = Vector3::Zero()) {
   JointMap map;
   map.origin.position = offset;
@@ -37,7 +37,7 @@ struct DependentTravel {
 DependentTravel dependent_travel(const scene::JointDescription& joint) {
   const Vector3 axis = joint.axis.normalized();
   switch (joint.kind) {
-    case scene::JointKind::RackAndPinion:  // the pinion's centre lies off the pitch line
+    case scene::JointKind::RackAndPinion:  // the pinion's centre is off the pitch line
       return {joint.ratio, joint.direction, joint.ratio * joint.direction.cross(axis)};
     case scene::JointKind::Worm:
       return {joint.ratio, joint.direction, joint.offset * joint.direction.cross(axis)};
@@ -74,7 +74,7 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
       const DependentTravel travel = dependent_travel(joint);
       JointMap map = scalar_map(travel.ratio * travel.direction, a, travel.offset);
       map.profile = joint.profile;
-      if (joint.slide) map.translation.setZero();  // the slide makes it
+      if (joint.slide) map.translation.setZero();  // the slide makes the translation
       return {map};
     }
     case JointKind::Spherical:
@@ -82,7 +82,7 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
     case JointKind::Floating:
       return {map_of_kind(JointMapKind::Free)};
     case JointKind::Fixed:
-    case JointKind::Slide:  // by its rotation
+    case JointKind::Slide:  // its rotation is a joint of another kind
       break;
   }
   return {};

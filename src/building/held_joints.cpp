@@ -17,7 +17,7 @@ class HeldJointFinder {
       for (const scene::LinkPoint& point : element->points()) touched_[links[point.link]] = true;
     for (const scene::ClearanceDescription& clearance : scene.clearances)
       touched_[links[clearance.joint.parent]] = touched_[links[clearance.joint.child]] = true;
-    // Of what touches something forces are not known beforehand.
+    // Forces of contacts are not known beforehand, so every link may be acted upon.
     if (!scene.contacts.empty()) touched_.assign(scene.links.size(), true);
     for (const scene::PointLoad& load : scene.loads)
       if (may_stand_in_world(links[load.link])) touched_[links[load.link]] = true;
@@ -39,7 +39,7 @@ class HeldJointFinder {
   }
 
  private:
-  /// Joints between the two links that a loop joint connects.
+  /// Marks the joints between the two links that a loop joint connects.
   void mark_loop(const scene::JointDescription& loop) {
     std::set<std::string> above[2];
     for (const int side : {0, 1}) {
@@ -52,7 +52,7 @@ class HeldJointFinder {
                                   std::inserter(unsuitable_, unsuitable_.end()));
   }
 
-  /// Whether a link could be a part of the world, upon which no load can act.
+  /// Whether a link could be a part of the world, on which no load can act.
   bool may_stand_in_world(int link) const {
     if (scene_.links[link].beam) return false;
     const scene::JointDescription* joint = tree_.above[link];
@@ -77,7 +77,7 @@ class HeldJointFinder {
            !measures_reaction(scene_, joint.child);
   }
 
-  /// Whether something acts upon a link, or upon those that are one body with it.
+  /// Whether something acts on a link, or on a link that is one body with it.
   bool is_touched(const std::string& link) const {
     const int index = links_[link];
     if (scene_.links[index].beam) return false;
@@ -90,16 +90,16 @@ class HeldJointFinder {
   const scene::SceneDescription& scene_;
   const LinkNames& links_;
   const JointTree& tree_;
-  std::vector<bool> touched_;         // per link: acted upon by what has no joint of the tree
-  std::set<std::string> unsuitable_;  // joints
+  std::vector<bool> touched_;         // per link: something other than joints of the tree acts on it
+  std::set<std::string> unsuitable_;  // names of joints
   std::unordered_map<std::string, double> held_;
 };
 
-/// Adds to what a held joint carries: a link, and those that are one body with it.
+/// Adds a link, and those that are one body with it, to what a held joint carries.
 void add_link(const ScenePlan& plan, const Mechanism& mechanism, const Model& model, int link, int node,
               RigidBody& body, HeldJoint& held) {
   const Attachment& frame = model.links[link].frame;
-  if (plan.meshes[link] || frame.node != node) {  // it has a node, and a joint, of its own
+  if (plan.meshes[link] || frame.node != node) {  // it has a node and a joint of its own
     held.outboard.push_back(mechanism.slave_joint[frame.node]);
     return;
   }

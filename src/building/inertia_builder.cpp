@@ -9,14 +9,14 @@
 namespace flexarm {
 namespace {
 
-/// The root link, then the joints' children.
+/// The root link, then the children of the joints, from the root to the leaves.
 std::vector<int> links_root_to_leaf(const ScenePlan& plan) {
   std::vector<int> links = {plan.tree.root};
   for (const scene::JointDescription* joint : plan.tree.joints) links.push_back(plan.links[joint->child]);
   return links;
 }
 
-/// Index of a new one, or -1 where the beam has none.
+/// Adds a beam's prestrain. Returns its index, or -1 if the beam has none.
 int add_prestrain(const scene::BeamDescription& beam, const Vector3& centroid, Model& model) {
   Prestrain out;
   out.centroid = centroid;
@@ -60,7 +60,7 @@ void add_elements(const ScenePlan& plan, int link, Model& model) {
   }
 }
 
-/// For all elements at once: growing by doubling costs a large scene twice the memory.
+/// Reserves memory for all elements at once, since growth by doubling would take twice the memory in a large scene.
 template <int Nodes>
 void reserve_elements(const ScenePlan& plan, std::vector<BeamElement<Nodes>>& elements) {
   std::size_t count = 0;
@@ -91,7 +91,8 @@ void add_beams(const ScenePlan& plan, Model& model) {
   model.mass_point_count = mass_point;
 }
 
-/// Per node: a joint alone decides where it is, no beam and no line, so that it may be moved inside its rigid body.
+/// Per node: whether a joint alone determines its place, and no beam or line, so that it may be moved inside its rigid
+/// body.
 std::vector<bool> movable_nodes(const Mechanism& mechanism) {
   std::vector<bool> is_movable(mechanism.model.nodes.size(), false);
   for (const JointMap& joint : mechanism.model.joints) is_movable[joint.slave] = joint.kind != JointMapKind::Slide;
@@ -101,7 +102,7 @@ std::vector<bool> movable_nodes(const Mechanism& mechanism) {
   return is_movable;
 }
 
-/// On the ends of beams.
+/// Adds the hubs at the ends of beams.
 void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, RigidBody>& bodies) {
   for (std::size_t link = 0; link < plan.scene.links.size(); ++link) {
     if (!plan.meshes[link]) continue;
@@ -124,7 +125,7 @@ void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
     bodies[frame.node] += body_of(*inertial, frame.offset);
   }
   add_hubs(plan, mechanism.model, bodies);
-  // A joint's slave goes to the centre of mass of its body: one node and one joint for each rigid link.
+  // Move a joint's slave to the centre of mass of its body: then a rigid link has one node and one joint.
   const std::vector<bool> is_movable = movable_nodes(mechanism);
   std::vector<Vector3> ways(is_movable.size(), Vector3::Zero());
   for (auto& [node, body] : bodies)

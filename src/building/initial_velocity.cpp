@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-/// Initial velocities of a loop's joints agree if what is left is this part of the largest.
+/// Largest rate at which the initial velocities of joints may open a loop, relative to the largest velocity.
 constexpr double kAgrees = 1e-9;
 
 class InitialVelocity {
@@ -23,23 +23,24 @@ class InitialVelocity {
  private:
   void set_joint(const JointChain& chain);
   void set_beam(int link);
-  /// The node of its own that a link may have though nothing is released: the first one of a beam, and that of a rigid
-  /// link of which a sensor asks what holds it.
+  /// Sets the velocity of the node that a link may have of its own even if its joint releases nothing: the first node
+  /// of a beam, or the node of a rigid link whose reaction a sensor measures.
   void follow_fixed(int link);
-  /// Rates of a joint that closes a loop: as given, else what leaves its slave's velocity least changed.
+  /// Sets the rates of a joint that closes a loop: those that the scene gives, or those that change its slave's
+  /// velocity least.
   void set_loop(const JointChain& chain);
-  /// Lets every slave follow once more, those of closing joints included.
+  /// Makes every slave follow its master once more, including the slaves of joints that close loops.
   void close_loops();
-  /// Gives rates about which the scene is silent the least values with which loops of rigid links stay closed.
+  /// Changes the rates that the scene does not give, by the smallest amount that keeps loops of rigid links closed.
   void satisfy_closures();
   bool is_given(const Coordinate& coordinate) const;
-  /// Velocity of a joint's slave from its master's.
+  /// Sets the velocity of a joint's slave from its master's.
   void follow(int joint, const ReleasedVector& rates);
   double mimic_ratio(const Coordinate& coordinate) const;
-  /// Rates that the scene gives or implies (motion, mimic); false if none is given.
+  /// Rates that the scene gives or implies (by a motion or a mimic). Returns false if none is given.
   bool given_rates(const JointChain& chain, ReleasedVector& rates) const;
   double given_rate(const Coordinate& coordinate, bool& is_given) const;
-  /// Least-squares rates for the velocity that the child's field asks of the joint's moved frame.
+  /// The rates with which the joint's moved frame has the velocity `target`, by least squares.
   ReleasedVector field_rates(const JointChain& chain, const Vector6& target);
   Vector6 field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const;
   void check_field(const scene::InitialLink& field, int link) const;
@@ -49,7 +50,7 @@ class InitialVelocity {
   const Model& model_;
   std::map<int, const scene::InitialLink*> fields_;  // by link
   std::map<std::string, double> initial_rates_;      // by coordinate, as the scene gives them
-  std::map<int, double> field_rates_;                // by coordinate: what a field gave, for mimics further out
+  std::map<int, double> field_rates_;                // by coordinate: given by a field, for later mimics
   std::vector<int> joint_of_;                        // by node: the joint of the tree of which it is the slave, or -1
   std::vector<Vector6> velocity_;                    // by node, {v, w}
   std::vector<ReleasedVector> rates_;                // by joint
@@ -80,7 +81,7 @@ std::vector<Vector6> InitialVelocity::field() {
     else if (fields_.count(child) && model_.links[child].frame.node >= 0)
       check_field(*fields_[child], child);
   }
-  for (const int j : joint_of_)  // centres of mass
+  for (const int j : joint_of_)  // nodes at centres of mass
     if (j >= 0 && model_.joints[j].kind == JointMapKind::Rigid) follow(j, ReleasedVector(0));
   close_loops();
   if (!model_.closures.empty()) satisfy_closures();
@@ -118,7 +119,7 @@ void InitialVelocity::satisfy_closures() {
   }
   if ((adjustable * change + opening).lpNorm<Eigen::Infinity>() > kAgrees * speed)
     throw ModelError(at_loop_joint(plan_.scene, model_.closures.front().name) +
-                     "the initial velocities of joints do not agree with the loop that it closes: give fewer of them");
+                     "the initial velocities of the joints contradict the loop that it closes: give fewer of them");
   velocity = scales.cwiseProduct(velocity + change);
   for (int i = 0; i < dof.node_count; ++i)
     if (dof.slave_joint[i] < 0) velocity_[i] = velocity.segment<6>(dof.first[i]);
@@ -205,7 +206,7 @@ double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given)
       is_given = true;
       return mimic_ratio(coordinate) * from_field->second;
     }
-    // What follows a coordinate of another joint is given by that, whether it moves or not.
+    // A coordinate that follows one of another joint is given by it, whether that one moves or not.
     const bool is_own = coordinate.is_coupled;
     bool is_master_given = false;
     const double rate = mimic_ratio(coordinate) * given_rate(model_.coordinates[coordinate.mimicked], is_master_given);
@@ -255,7 +256,8 @@ ReleasedVector InitialVelocity::field_rates(const JointChain& chain, const Vecto
     }
   }
   const Vector6 relative = target - at_point(velocity_[last.slave], last.slave);
-  // The travel of a slide that follows an angle, which comes right after it, is a part of the angle's motion.
+  // The travel of a slide that follows an angle is a part of the angle's motion. The angle comes right after the
+  // travel.
   const Coordinate& first = model_.coordinates[model_.first_coordinate[chain.first_map]];
   if (!first.is_coupled) return least_squares(columns, relative);
   const double ratio = mimic_ratio(first);

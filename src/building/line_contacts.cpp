@@ -10,9 +10,11 @@
 namespace flexarm {
 namespace {
 
-/// Of the depth beyond which a contact gives way no further: what crossed lines have the law's stiffness at.
+/// Relative to the depth beyond which a contact gives way no further: at this depth crossed lines have the law's
+/// stiffness.
 constexpr double kCrossingDepth = 0.25;
-/// Most stations between both ends of an element: with two parts of the line each they are as many as may touch.
+/// Most intervals between the stations along an element. With two parts of the line for each station, there are as many
+/// pairs as may touch.
 constexpr int kMostLineSpans = LineSearch::kMostPairs / 2 - 1;
 
 ContactLine line_of(const Model& model, const ScenePlan& plan, int link) {
@@ -31,7 +33,7 @@ ContactLine line_of(const Model& model, const ScenePlan& plan, int link) {
   return out;
 }
 
-/// Parts of a line between the elements that have a node.
+/// Parts of a line without the elements that have this node.
 std::vector<LineRange> ranges_without(const ContactLine& line, int node) {
   std::vector<LineRange> out;
   bool is_open = false;
@@ -52,14 +54,15 @@ void place(const LinkPair& links, const LineTouch& touch, ContactLaw law, double
   placed.push_back(std::make_shared<LineContact>(links.names, touch, law, crossing, links.is_reversed));
 }
 
-/// Where the line of a beam is, by arc length: element + (xi + 1) / 2.
+/// Parameter of a beam's line at an arc length: element + (xi + 1) / 2.
 double parameter_at(const BeamLink& beam, double arc_length) {
   const ElementPlace at = element_at(beam, std::clamp(arc_length, 0.0, beam.length));
   return at.element + 0.5 * (at.xi + 1);
 }
 
-/// Parts of its own line that a station at an arc length may touch: a tube whose bend is no tighter than its radius
-/// does not touch itself nearer than over half a circle. The ends of a ring are near, too.
+/// Parts of its own line that a station at an arc length may touch. If a tube bends no more tightly than its radius, it
+/// can only touch itself after half a circle, which is pi times the radius away. The two ends of a ring are near to
+/// each other, too.
 std::vector<LineRange> own_ranges(const BeamLink& beam, double arc_length, bool is_ring) {
   const double apart = kPi * beam.radius, low = is_ring ? arc_length + apart - beam.length : 0.0;
   const double high = is_ring ? arc_length - apart + beam.length : beam.length;
@@ -71,7 +74,7 @@ std::vector<LineRange> own_ranges(const BeamLink& beam, double arc_length, bool 
   return out;
 }
 
-/// Stations of one beam against the line of another one, or its own.
+/// Adds contacts of the stations of one beam with the line of another one, or with its own.
 void join_stations_to_line(const Model& model, const ScenePlan& plan, const LinkPair& links, const ContactLaw& law,
                            ForceElementList& placed) {
   const auto& [first, second, names, is_reversed] = links;
@@ -86,7 +89,7 @@ void join_stations_to_line(const Model& model, const ScenePlan& plan, const Link
   double begin = 0;
   for (std::size_t k = 0; k < own.elements.size(); ++k) {
     const double length = own.lengths[k];
-    // So near to each other that crossed lines touch by several of them.
+    // Stations are so near to each other that several of them touch where lines cross.
     const int spans = std::min(static_cast<int>(std::ceil(length / (0.5 * half))), kMostLineSpans);
     touch.side = {{own.elements[k].begin(), own.elements[k].begin() + own.order + 1}, {}};
     touch.pairs.clear();
@@ -103,7 +106,7 @@ void join_stations_to_line(const Model& model, const ScenePlan& plan, const Link
         touch.pairs.push_back({i, range, weights.slopes});
     }
     begin += length;
-    // Of crossed lines the stations have the law's stiffness together, at that depth. (docs/notes/contact.md 6)
+    // Where lines cross, the stations together have the law's stiffness, at that depth. (docs/notes/contact.md 6)
     place(links, touch, law, 15.0 / 16 * beam.length / half, model, placed);
   }
 }
@@ -140,7 +143,7 @@ void join_with_line(const Model& model, const ScenePlan& plan, const LinkPair& l
 
 void join_lines(const Model& model, const ScenePlan& plan, const LinkPair& links, const ContactLaw& law,
                 ForceElementList& placed) {
-  ContactLaw half = law;  // each way
+  ContactLaw half = law;  // for each direction
   half.stiffness *= 0.5;
   half.grip *= 0.5;
   join_stations_to_line(model, plan, links, half, placed);

@@ -11,24 +11,25 @@
 
 namespace flexarm {
 
-/// Of two links by their index among the plan's, the names of both; `is_reversed`: the other way round.
+/// Two links, by their indices in the plan, and their names. `is_reversed`: the names are in the opposite order of the
+/// indices.
 struct LinkPair {
   int first = 0, second = 0;
   std::vector<std::string> names;
   bool is_reversed = false;
 };
 
-/// Whether what has these stations touches the line of a beam, and not the beam's stations it. A small ball does, or
-/// else it would fall between these: that is true of one that is smaller than an element. Larger ones may be embraced.
+/// Whether a ball is tested against the line of a beam, and not the beam's stations against the ball. That is so if the
+/// ball is smaller than an element, since it would fall between the stations. A beam may wrap around larger balls.
 bool touches_line(double ball_radius, const BeamLink& beam);
-/// Whether corners touch the line of a beam, too: where its own stations, which look for faces, are far from each
-/// other.
+/// Whether corners are tested against the line of a beam, too: its own stations, which are tested against faces, are
+/// then far apart.
 bool has_room_for_corners(const BeamLink& beam, int most_spans);
 
-/// Stations of a body, of each of its nodes, against the line of the second link.
+/// Adds contacts of the stations of a body, given for each of its nodes, with the line of the second link.
 void join_with_line(const Model& model, const ScenePlan& plan, const LinkPair& links,
                     const std::vector<ContactStations>& bodies, const ContactLaw& law, ForceElementList& placed);
-/// Lines of two beams against each other, both ways; of one beam against itself.
+/// Adds contacts of the lines of two beams with each other, both ways; or of one beam with itself.
 void join_lines(const Model& model, const ScenePlan& plan, const LinkPair& links, const ContactLaw& law,
                 ForceElementList& placed);
 

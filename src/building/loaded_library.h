@@ -8,8 +8,9 @@
 
 namespace flexarm {
 
-/// The functions that a library beside this one has under a symbol. It stays loaded: what it made has its code.
-/// @throws std::runtime_error saying `cannot` and why, if it cannot be loaded
+/// The functions that a library in the same folder as this one has under a symbol. The library stays loaded, since
+/// objects that it made use its code.
+/// @throws std::runtime_error with `cannot` and the reason, if it cannot be loaded
 template <class Functions>
 const Functions& loaded_functions(const char* library, const char* symbol, const char* cannot) {
   void* const loaded = dlopen(library, RTLD_LAZY | RTLD_LOCAL);

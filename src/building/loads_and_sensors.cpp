@@ -38,7 +38,8 @@ class LoadBuilder {
       throw ModelError(at(load.location, "<distributed_load>") + "link '" + load.link + "' has no <beam>");
     const BeamMesh& mesh = plan_.meshes[link]->mesh;
     const int history = add_history(load.history);
-    // Lumped with the weights int I^i ds: exact for a dead load, the nodes' Newton-Cotes rule for a follower load.
+    // Lumped at nodes with the weights int I^i ds: exact for a dead load, and the nodes' Newton-Cotes rule for a
+    // follower load.
     const std::vector<double> weights =
         length_weights(plan_, model_, link, load.from.value_or(0.0), load.to.value_or(model_.links[link].beam->length));
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -75,7 +76,7 @@ PlacedLoads place_loads(const ScenePlan& plan, const Model& model) {
 
 namespace {
 
-/// A point of the link of that name, given in the link's undeformed frame [m].
+/// A point of the link with this name. `point` is in the link's undeformed frame [m].
 ProbePoint probe_point(const ScenePlan& plan, const Model& model, const std::string& name, const Vector3& point) {
   ProbePoint out;
   out.link = plan.links[name];
@@ -118,7 +119,7 @@ bool measures_section(SensorKind kind) {
   return kind == SensorKind::SectionForce || kind == SensorKind::Strain;
 }
 
-/// The joint that carries a link, or the loop joint that the sensor names.
+/// The joint whose reaction a sensor measures: the one that carries the link, or the loop joint that the sensor names.
 ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::Sensor& sensor, const LinkFrame& link,
                              const Mechanism& mechanism, const Model& model) {
   ReactionPlace place;
@@ -147,7 +148,7 @@ ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::
   return place;
 }
 
-/// Index into Model::reactions, which sensors of the same share.
+/// Index into Model::reactions. Sensors of the same reaction share an entry.
 int index_of(const ReactionPlace& place, Model& model) {
   const auto same = std::find(model.reactions.begin(), model.reactions.end(), place);
   const auto index = static_cast<int>(same - model.reactions.begin());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_set>
 #include <utility>
 
@@ -14,20 +15,20 @@
 namespace flexarm {
 namespace {
 
-/// Gap between the frames of a closing joint, relative to the extent of the mechanism, that is taken for rounding of
-/// the scene's numbers.
+/// Largest gap between the frames of a closing joint, relative to the extent of the mechanism. A smaller gap may result
+/// from rounded numbers in the scene.
 constexpr double kLargestGap = 1e-6;
 
-/// Nodes from whose poses a joint computes its slave's; none for the world.
+/// Nodes whose poses determine the pose of a joint's slave; none for the world.
 std::vector<int> masters(const Model& model, const JointMap& joint) {
   if (joint.kind == JointMapKind::Slide) return model.slide_lines[joint.line].nodes;
   return joint.master < 0 ? std::vector<int>() : std::vector<int>{joint.master};
 }
 
-/// Turns a map round: its master's pose from its slave's, as a function of the same coordinate. False where that is no
-/// elementary joint.
+/// Reverses a map, so that it gives the master's pose from the slave's for the same coordinate. Returns false if the
+/// reversed map is no elementary joint.
 bool invert(JointMap& map) {
-  // Travel and turn must commute: T(t) R(a) backwards is R(-a) T(-t).
+  // Travel and turn must commute, since the reverse of T(t) R(a) is R(-a) T(-t).
   const double across = map.translation.cross(map.rotation).norm();
   if (map.kind != JointMapKind::Scalar || !map.origin.position.isZero(0) ||
       across > 1e-12 * map.translation.norm() * map.rotation.norm())
@@ -45,14 +46,15 @@ class LoopBuilder {
   void add(const scene::JointDescription& joint);
 
  private:
-  /// The same frame, seen from the node at the root of the rigid body to which it is fixed.
+  /// The same frame, relative to the node at the root of the rigid body to which it is fixed.
   Attachment carrier(Attachment frame) const;
-  /// The node is free, and `master` does not follow from it.
+  /// Whether the node is free, and `master` does not depend on it.
   bool can_become_slave(int node, int master) const;
-  /// The node at which the child is held. If a flexible link is joined to itself at the beginning of a closed line, it
-  /// is its end.
+  /// The node at which the child is held, with the link's frame. If a flexible link is joined to itself at the
+  /// beginning of a closed line, it is the node at the line's end.
   Attachment child_place(const scene::JointDescription& joint) const;
-  /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
+  /// Adds the chain of a joint from `master`, through `maps`, of which the first is at `frame` (world), to the existing
+  /// node `slave`.
   void add_chain(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
                  const std::vector<std::string>& names, int master, int slave, const Pose& frame);
 
@@ -129,9 +131,10 @@ void LoopBuilder::add(const scene::JointDescription& joint) {
     std::reverse(names.begin(), names.end());
     for (JointMap& map : maps)
       if (!invert(map))
-        throw ModelError(where +
-                         "only the parent's end is free, and this kind of joint needs the child's: exchange <parent> "
-                         "and <child>");
+        throw ModelError(
+            where +
+            "only the parent has a free end, but this kind of joint needs one at the child: exchange <parent> "
+            "and <child>");
   }
   add_chain(joint, maps, names, onto_child ? parent.node : child.node, onto_child ? child.node : parent.node,
             onto_child ? frame : Pose{meeting.position, frame.orientation});
@@ -153,13 +156,13 @@ void LoopBuilder::add_chain(const scene::JointDescription& joint, const std::vec
     name += count;
   }
   if (!names.empty() && names != coordinate_names(joint)) {
-    // The chain is turned round; coordinates are numbered as their names are.
+    // The chain is reversed, but coordinates keep the order of their names.
     const std::size_t first = model_.coordinates.size() - names.size();
     std::reverse(model_.coordinates.begin() + static_cast<std::ptrdiff_t>(first), model_.coordinates.end());
     for (std::size_t i = first; i < model_.coordinates.size(); ++i)
       model_.first_coordinate[model_.coordinates[i].joint] = static_cast<int>(i);
   }
-  // The slave as it stands at the start: zero of the coordinates is the initial configuration.
+  // Zero coordinates mean the initial configuration, so the slave keeps its initial pose relative to the chain.
   const Pose offset = mechanism_.pose_of(node).inverse() * mechanism_.pose_of(slave);
   JointMap rigid;
   rigid.master = node;
@@ -204,10 +207,35 @@ void sort_joints(Mechanism& mechanism) {
     if (joint.leaving >= 0) joint.leaving = place[joint.leaving];
   for (Coordinate& coordinate : model.coordinates)
     if (!is_held(model, coordinate)) coordinate.joint = place[coordinate.joint];
-  // A chain stays together: nothing but its next joint hangs on a node inside it.
+  // A chain stays together, since only its own next joint is attached to a node inside it.
   for (auto* chains : {&mechanism.tree_joints, &mechanism.loop_joints})
     for (JointChain& chain : *chains)
       if (chain.map_count > 0) chain.first_map = place[chain.first_map];
+}
+
+/// Moves hidden coordinates behind the others, so that users count only those that they see.
+void put_hidden_last(Mechanism& mechanism) {
+  Model& model = mechanism.model;
+  std::vector<bool> is_hidden(model.coordinates.size(), false);
+  for (const auto* chains : {&mechanism.tree_joints, &mechanism.loop_joints})
+    for (const JointChain& chain : *chains) {
+      if (!chain.joint->is_hidden) continue;
+      for (int j = chain.first_map; j < chain.first_map + chain.map_count; ++j)
+        std::fill_n(is_hidden.begin() + model.first_coordinate[j], released_count(model.joints[j].kind), true);
+    }
+  std::vector<int> order(is_hidden.size()), place(is_hidden.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](int coordinate) { return !is_hidden[coordinate]; });
+  const std::vector<Coordinate> before = model.coordinates;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    model.coordinates[i] = before[order[i]];
+    place[order[i]] = static_cast<int>(i);
+  }
+  for (int& first : model.first_coordinate)
+    if (first < static_cast<int>(place.size())) first = place[first];
+  for (Coordinate& coordinate : model.coordinates)
+    if (coordinate.mimicked >= 0) coordinate.mimicked = place[coordinate.mimicked];
+  for (HeldJoint& held : model.held) held.coordinate = place[held.coordinate];
 }
 
 }  // namespace
@@ -216,6 +244,7 @@ ClosedMechanism close_loops(const ScenePlan& plan, TreeAtStart tree) {
   LoopBuilder loops(plan, tree);
   for (const scene::JointDescription& joint : plan.scene.loop_joints) loops.add(joint);
   if (!plan.scene.loop_joints.empty()) sort_joints(tree);
+  put_hidden_last(tree);
   tree.model.length_scale = tree.extent();
   return {std::move(tree)};
 }

@@ -8,14 +8,14 @@
 namespace flexarm {
 namespace {
 
-/// Of an angle between an axis and what hangs along it.
+/// Round-off of the angle between an axis and a body along it.
 constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
-/// A composite inertia beside that of the largest motion about the joint, below which it has too few digits: a long
-/// thin rod about its own axis.
+/// If a composite inertia is less than this part of that of the largest motion about the joint, it has too few digits.
+/// An example is a long thin rod about its own axis.
 constexpr double kDoubtful = 1e-9;
 
-/// Mass, first moment and inertia of everything outboard of a node, about that node, world axes, initial configuration:
-/// round-off does not grow with the distance to the world's origin.
+/// Mass, first moment and inertia of everything outboard of a node, world axes, initial configuration. They are about
+/// the node, so that round-off does not grow with the distance to the world's origin.
 struct Composite {
   double mass = 0;
   Vector3 moment = Vector3::Zero();
@@ -26,14 +26,14 @@ struct Composite {
     moment += other.moment;
     inertia += other.inertia;
   }
-  /// About another point, which `here` is as far from.
+  /// The same about another point. `here`: from that point to the present one.
   Composite seen_from(const Vector3& here) const {
     const Matrix3 p = so3::hat(here), s = so3::hat(moment);
     return {mass, moment + mass * here, inertia - s * p - p * s - mass * p * p};
   }
 };
 
-/// The innermost node that a loop's slave, but not its master, hangs on.
+/// The innermost node that carries a loop's slave, but not its master.
 int start_of_loop(const std::vector<int>& parents, const JointMap& joint) {
   std::unordered_set<int> carriers;  // of the master
   for (int node = joint.master; node >= 0; node = parents[node]) carriers.insert(node);
@@ -55,7 +55,8 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   };
   for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
     if (parents[i] >= 0) out[parents[i]] += seen_from(parents[i], i);  // parents come before their children
-  // A joint that closes a loop moves what hangs in it; the nodes of its chain carry nothing themselves.
+  // A massless node of a chain gets the properties of what its joint moves. If the joint closes a loop, that is the
+  // branch from the loop's start to the slave.
   for (std::size_t j = model.joints.size(); j-- > 0;) {
     const JointMap& joint = model.joints[j];
     if (joint.master < 0 || out[joint.master].mass != 0) continue;
@@ -65,14 +66,14 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   return out;
 }
 
-/// What a coordinate moves, at the start.
+/// The inertia that a coordinate moves, at the start.
 struct MovedInertia {
   double inertia = 0;        ///< m |t|^2 + J |r|^2 [kg or kg m^2]
-  bool is_anything = false;  ///< more than round-off
+  bool is_anything = false;  ///< the inertia is more than round-off
 };
 
-/// About an axis through `origin`, {translation, spin} in world axes, of all that hangs on a node: squares of distances
-/// to the axis, which cancel nothing.
+/// Inertia of all that hangs on the node `root`, in a motion {translation, spin} (world axes) about an axis through
+/// `origin`. It is a sum of squares of distances to the axis, in which nothing cancels.
 double inertia_about(const std::vector<int>& parents, const Model& model, int root, const Vector3& origin,
                      const Vector6& axis) {
   std::vector<bool> hangs(parents.size(), false);
@@ -103,10 +104,10 @@ MovedInertia moved_inertia(const std::vector<int>& parents, const Model& model, 
   }
   const NodePose& slave = model.nodes[joint.slave];
   const Composite body = outboard[joint.slave].seen_from(slave.position - moved_origin(joint, slave));
-  // Screw-like couplings have no cross term about their axis.
+  // Screw-like couplings have no cross term of travel and turn about their axis.
   const Vector3 about_axis = frame * rotation;
   const double inertia = body.mass * translation.squaredNorm() + about_axis.dot(body.inertia * about_axis);
-  // Nothing is what is left by round-off.
+  // An inertia of the size of round-off counts as none.
   const double terms = body.mass * translation.squaredNorm() + body.inertia.trace() * rotation.squaredNorm();
   if (inertia > kDoubtful * terms || terms == 0) return {inertia, inertia > 0};
   Vector6 axis;
@@ -115,7 +116,7 @@ MovedInertia moved_inertia(const std::vector<int>& parents, const Model& model, 
   return {summed, summed > kRoundOff * kRoundOff * terms};
 }
 
-/// Adds what coordinates that move nothing themselves move through those that follow them.
+/// If a coordinate moves nothing itself, adds what the coordinates that follow it move.
 void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
   const std::vector<MovedInertia> own = moved;
   for (std::size_t i = 0; i < own.size(); ++i) {
@@ -140,13 +141,19 @@ std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& 
     if (rotor > 0) moved.back() = {(moved.back().is_anything ? moved.back().inertia : 0) + rotor, true};
   }
   add_followers(model, moved);
+  const auto count = moved.size();
+  // A prescribed or following coordinate needs no inertia.
+  const auto is_massless = [&](std::size_t i) {
+    return !moved[i].is_anything && model.coordinates[i].motion < 0 && model.coordinates[i].mimicked < 0;
+  };
+  std::vector<bool> is_asked(count);
+  for (std::size_t i = 0; i < count; ++i) is_asked[i] = is_massless(i) || model.coordinates[i].limit;
+  const std::vector<InLoops> in_loops = loop_inertias(parents, model, is_asked);
   std::vector<int> massless;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    Coordinate& coordinate = model.coordinates[i];
-    // A driven or following coordinate needs none.
-    if (!moved[i].is_anything && coordinate.motion < 0 && coordinate.mimicked < 0)
-      massless.push_back(static_cast<int>(i));
-    if (coordinate.limit) coordinate.limit->inertia = moved[i].inertia;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_massless(i) && !in_loops[i].is_determined) massless.push_back(static_cast<int>(i));
+    if (std::optional<LimitStop>& limit = model.coordinates[i].limit)
+      limit->inertia = in_loops[i].inertia > 0 ? in_loops[i].inertia : moved[i].inertia;
   }
   return massless;
 }

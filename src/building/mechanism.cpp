@@ -15,7 +15,7 @@ double Mechanism::extent() const {
   double extent = 0;
   for (const LinkFrame& link : model.links)
     if (link.beam) extent = std::max(extent, link.beam->length);
-  const auto joint_of = [&](std::size_t node) {  // where the joint is that moves the node, or the node itself
+  const auto joint_of = [&](std::size_t node) {  // the place of the joint that moves the node, or of the node itself
     const int joint = slave_joint[node];
     return joint < 0 ? model.nodes[node].position : moved_origin(model.joints[joint], model.nodes[node]);
   };

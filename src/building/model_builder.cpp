@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "building/cylinder_places.h"
 #include "building/elementary_joints.h"
 #include "building/passes.h"
 #include "building/rigid_lines.h"
@@ -14,7 +15,7 @@
 namespace flexarm {
 namespace {
 
-/// A model, and its coordinates whose accelerations would be undetermined.
+/// A model, and its coordinates whose accelerations would not be determined.
 struct BuiltModel {
   Model model;
   std::vector<int> massless;   ///< they move nothing that has inertia
@@ -57,6 +58,13 @@ bool is_determined(const BuiltModel& built) {
   return built.massless.empty() && built.dependent.empty();
 }
 
+bool has_winches(const scene::SceneDescription& scene) {
+  return std::any_of(scene.force_elements.begin(), scene.force_elements.end(), [](const auto& element) {
+    const std::vector<scene::LinkPoint> points = element->points();
+    return std::any_of(points.begin(), points.end(), [](const auto& point) { return point.attribute == "winch"; });
+  });
+}
+
 [[noreturn]] void refuse_massless(const scene::SceneDescription& scene, const BuiltModel& built) {
   std::map<std::string, const scene::JointDescription*> joints;  // by coordinate
   for (const auto* list : {&scene.joints, &scene.loop_joints})
@@ -72,25 +80,27 @@ bool is_determined(const BuiltModel& built) {
   };
   list(built.massless, "that has inertia");
   list(built.dependent,
-       "at the start that the joints outboard of it would not move as well: axes are in line, or links "
-       "without inertia follow each other");
+       "at the start that the joints beyond it do not move, too: axes are in line, or massless links follow "
+       "each other");
   const std::string start = built.dependent.empty() ? "" : "start elsewhere by <initial>, ";
   throw ModelError(
-      text + scene.file + ": give the links outboard of these joints an <inertial> or a <beam>, " + start +
-      "or hold those with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
+      text + scene.file + ": give the links beyond these joints an <inertial> or a <beam>, " + start +
+      "or hold those with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)" +
+      (has_winches(scene) ? "; a winch gets its inertia by <drive rotor_inertia>" : ""));
 }
 
-/// The scene with constant motions of these coordinates in place of everything else that it says of them.
+/// The scene with constant motions of these coordinates, instead of anything else that it says about them.
 scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltModel& built) {
   std::set<std::string> locked;
   std::vector<int> undetermined = built.massless;
   undetermined.insert(undetermined.end(), built.dependent.begin(), built.dependent.end());
   for (const int index : undetermined) {
     const Coordinate& coordinate = built.model.coordinates[index];
-    if (coordinate.is_angle) continue;  // of a free rotation, which no motion can prescribe
+    if (coordinate.is_angle) continue;  // a component of a free rotation, which no motion can prescribe
     locked.insert(coordinate.name);
     const Released& start = built.model.initial_released[coordinate.joint];
-    // A function of time: what moves nothing is not worth to be held as a part of another body.
+    // A function of time instead of a number, so that the joint does not become a HeldJoint: there is nothing to merge
+    // with another body.
     const std::string place = fmt::format("0:{}", start.displacement[coordinate.component]);
     scene.motions.push_back({coordinate.name, TimeFunction::parse(place), {scene.file}});
   }
@@ -110,6 +120,7 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
 }  // namespace
 
 Model build_model(const scene::SceneDescription& original, std::vector<std::optional<RigidLine>>* rigid_lines) {
+  if (!original.cylinders.empty()) return build_model(place_cylinders(original).scene, rigid_lines);
   RigidLines elastic(original);
   if (rigid_lines) *rigid_lines = std::move(elastic.lines);
   const scene::SceneDescription& scene = elastic.scene;

@@ -1,5 +1,5 @@
 #pragma once
-/// From a scene description to a model.
+/// Builds a model from a scene description.
 
 #include <optional>
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace flexarm {
 
-/// Meshes the flexible links, turns joints into elementary maps, lumps rigid bodies on nodes and places loads.
-/// `rigid_lines`: where the lines of links with rigid beams are wanted, per link; null: nowhere.
+/// Meshes the flexible links, turns joints into elementary joints, lumps rigid bodies at nodes, and places loads.
+/// `rigid_lines`: receives the lines of links with rigid beams, per link; may be null.
 /// @throws ModelError
 Model build_model(const scene::SceneDescription& scene, std::vector<std::optional<RigidLine>>* rigid_lines = nullptr);
 

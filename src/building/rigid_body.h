@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// Rigid bodies that are one, in the frame of the node that carries them.
+/// Several rigid bodies as one, in the frame of the node that carries them.
 struct RigidBody {
   double mass = 0;
   Vector3 center = Vector3::Zero();
@@ -25,7 +25,7 @@ struct RigidBody {
   }
 };
 
-/// Of a link whose frame is seen from the node.
+/// The rigid body of a link. `link`: the link's frame relative to the node.
 inline RigidBody body_of(const scene::RigidInertia& inertial, const Pose& link) {
   const Matrix3 rotation = link.orientation.toRotationMatrix();
   return {inertial.mass, link * inertial.center_of_mass, rotation * inertial.inertia * rotation.transpose()};

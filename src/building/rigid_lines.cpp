@@ -35,18 +35,18 @@ struct MassSum {
   }
 };
 
-/// A force per length of one in any direction, as one force: how large, and where.
+/// The resultant of a force per length of one, in any direction: its size, and where it acts.
 struct Resultant {
   double length = 0;                 ///< [m]
-  Vector3 moment = Vector3::Zero();  ///< of the reference line about the link's origin, int r ds [m^2]
+  Vector3 moment = Vector3::Zero();  ///< first moment of the reference line about the link's origin, int r ds [m^2]
 };
 
-/// What is asked of a line's mesh: sums over its elements.
+/// Sums over the elements of a line's mesh.
 class LineSums {
  public:
   LineSums(const scene::BeamDescription& beam, const BeamMesh& mesh) : beam_(beam), mesh_(mesh) {}
 
-  /// Without hubs.
+  /// Mass and inertia of the line, without hubs.
   MassSum line_mass() const {
     MassSum sum;
     for_each([&](const auto& element, const auto& nodes, double, double) { add(element, nodes, sum); });
@@ -75,7 +75,7 @@ class LineSums {
   }
 
  private:
-  /// `visit(element, poses of its nodes, arc length at its beginning, at its end)`.
+  /// Calls `visit(element, poses of its nodes, arc length at its beginning, at its end)` for each element.
   template <class Visit>
   void for_each(const Visit& visit) const {
     const BeamGroups orders;
@@ -127,7 +127,7 @@ RigidLine rigid_line(const BeamMesh& mesh, double mass) {
   return line;
 }
 
-/// Refuses what makes no sense without elements, of the beam itself.
+/// Refuses properties of the beam itself that make no sense without elements.
 void require_rigid(const scene::LinkDescription& link) {
   const scene::BeamDescription& beam = *link.beam;
   const std::string where = at(beam.location, "<beam> of link '" + link.name + "'");
@@ -138,7 +138,7 @@ void require_rigid(const scene::LinkDescription& link) {
     throw ModelError(where + "with elements=\"0\" it is rigid, and mass-proportional <damping> acts upon elements");
 }
 
-/// Refuses what needs sections that bend.
+/// Refuses whatever needs sections that bend.
 void require_no_sections(const scene::SceneDescription& scene) {
   const auto require_flexible = [&](const scene::SourceLocation& location, const std::string& element,
                                     const std::string& name) {
@@ -154,7 +154,7 @@ void require_no_sections(const scene::SceneDescription& scene) {
       require_flexible(sensor.location, "<sensor> '" + sensor.name + "'", sensor.link);
 }
 
-/// Makes one link rigid, and what is distributed along it loads at points.
+/// Makes one link rigid, and turns loads that are distributed along it into loads at points. Returns the link's line.
 RigidLine stiffen(scene::LinkDescription& link, scene::SceneDescription& scene) {
   require_rigid(link);
   scene::BeamDescription beam = *link.beam;

@@ -1,5 +1,5 @@
 #pragma once
-/// Makes rigid bodies of beams without elements, before positions are known (internal to building/).
+/// Turns beams without elements into rigid bodies, before positions are known (internal to building/).
 
 #include <optional>
 #include <vector>
@@ -16,15 +16,16 @@ struct RigidLine {
   double mass = 0, radius = 0;
 };
 
-/// A scene whose beams all have elements.
+/// A scene in which all beams have elements.
 struct RigidLines {
-  /// A link whose beam has none becomes a rigid one. Its mass, centre of mass and inertia are those of elements="auto"
-  /// by the quadrature of the elements, hubs included; of what is distributed along its line it takes the resultants.
-  /// @throws ModelError where something needs the link to be flexible.
+  /// A link whose beam has no elements becomes rigid. Its mass, centre of mass and inertia are those with
+  /// elements="auto", by the quadrature of the elements, including hubs. Loads that are distributed along its line
+  /// become their resultants.
+  /// @throws ModelError if something needs the link to be flexible.
   explicit RigidLines(const scene::SceneDescription& original);
 
   scene::SceneDescription scene;
-  std::vector<std::optional<RigidLine>> lines;  ///< per link; empty for those that had elements, or no beam
+  std::vector<std::optional<RigidLine>> lines;  ///< per link; empty if its beam has elements, or if it has no beam
 };
 
 }  // namespace flexarm

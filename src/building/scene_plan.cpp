@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-/// Meshes with element borders wherever a joint or a load attaches.
+/// Meshes all flexible links, with element borders wherever a joint or a load attaches.
 LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& links) {
   LinkMeshes meshes(scene.links.size());
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
@@ -38,10 +38,10 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     for (const scene::LinkPoint& point : element->points()) attach(point.link, point.at);
   for (const scene::DistributedLoad& load : scene.distributed_loads) {
     const int link = links[load.link];
-    if (!meshes[link]) continue;  // said where loads are placed
+    if (!meshes[link]) continue;  // the pass that places loads reports it
     for (const double end : ends_of(load, meshes[link]->centreline)) borders[link].push_back(end);
   }
-  int room = scene::kMostBeamNodes;  // of nodes
+  int room = scene::kMostBeamNodes;  // number of nodes that may still be made
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!meshes[i]) continue;
     const scene::BeamDescription& beam = *scene.links[i].beam;
@@ -52,7 +52,7 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
   return meshes;
 }
 
-/// Size of the largest part, joints on the root link seen from `origin`.
+/// Size of the largest part. Joints on the root link are taken relative to `origin`.
 double size_of(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes,
                const Vector3& origin) {
   double size = 0;
@@ -72,7 +72,7 @@ double size_of(const scene::SceneDescription& scene, const JointTree& tree, cons
   return size;
 }
 
-/// See Model::floats.
+/// The value of Model::floats.
 bool floats(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes) {
   const auto& on_root = tree.below[tree.root];
   const auto is_free = [&](const scene::JointDescription* joint) {
@@ -128,11 +128,11 @@ JointTree::JointTree(const scene::SceneDescription& scene, const LinkNames& link
     above[child] = &joint;
     below[links[joint.parent]].push_back(&joint);
   }
-  // What slides comes after the beams that are welded to the line.
+  // Joints that slide come after the beams that are welded to the line.
   for (auto& list : below)
     std::stable_partition(list.begin(), list.end(),
                           [](const scene::JointDescription* joint) { return joint->kind != scene::JointKind::Slide; });
-  // Depth first: nodes of a branch stand together, which keeps the matrix banded.
+  // Depth first: nodes of a branch are consecutive, which keeps the matrix banded.
   std::vector<const scene::JointDescription*> stack(below[root].rbegin(), below[root].rend());
   while (!stack.empty()) {
     const scene::JointDescription* joint = stack.back();

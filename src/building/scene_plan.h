@@ -1,5 +1,6 @@
 #pragma once
-/// Everything about a scene that does not depend on positions, meshes of single links included (internal to building/).
+/// Everything about a scene that does not depend on positions, including meshes of single links (internal to
+/// building/).
 
 #include <optional>
 #include <string>
@@ -12,18 +13,18 @@
 
 namespace flexarm {
 
-/// "file:line: element: ", with which messages about an element begin.
+/// "file:line: element: ", the beginning of messages about an element.
 std::string at(const scene::SourceLocation& location, const std::string& element);
-/// The same of the loop joint of this name, which the scene has.
+/// The same for the loop joint of this name, which the scene must have.
 std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name);
 
-/// Links of a scene by name.
+/// Indices of the links of a scene by name.
 class LinkNames {
  public:
-  /// @throws ModelError where two links have the same name.
+  /// @throws ModelError if two links have the same name.
   explicit LinkNames(const scene::SceneDescription& scene);
   /// Index into SceneDescription::links.
-  /// @throws ModelError where there is none.
+  /// @throws ModelError if there is no such link.
   int operator[](const std::string& name) const;
 
  private:
@@ -33,41 +34,41 @@ class LinkNames {
 
 /// The tree that links and joints form.
 struct JointTree {
-  /// @throws ModelError where a link has two parents or is not connected to the root link.
+  /// @throws ModelError if a link has two parents or is not connected to the root link.
   JointTree(const scene::SceneDescription& scene, const LinkNames& links);
 
-  int root;                                                        ///< link
-  std::vector<const scene::JointDescription*> joints;              ///< root to leaf, each branch in one piece
-  std::vector<const scene::JointDescription*> above;               ///< per link; null above the root
-  std::vector<std::vector<const scene::JointDescription*>> below;  ///< per link; what slides on it comes last
+  int root;                                                        ///< index of the root link
+  std::vector<const scene::JointDescription*> joints;              ///< root to leaf; each branch is consecutive
+  std::vector<const scene::JointDescription*> above;               ///< per link: joint that carries it; null: root
+  std::vector<std::vector<const scene::JointDescription*>> below;  ///< per link: joints on it; slides last
 };
 
-/// A link with a beam, undeformed.
+/// The undeformed line and mesh of a link with a beam.
 struct LinkMesh {
   Centreline centreline;
   BeamMesh mesh;
 };
 
-/// @throws ModelError where the beam's centreline or order is impossible.
+/// @throws ModelError if the beam's centreline or order is impossible.
 Centreline centreline_of(const scene::LinkDescription& link);
 
 /// See mesh_beam().
-/// @throws ModelError where there is no such mesh.
+/// @throws ModelError if there is no such mesh.
 BeamMesh mesh_of(const scene::LinkDescription& link, const Centreline& centreline, const std::vector<double>& borders,
                  int most = scene::kMostBeamElements);
 
-/// Arc lengths between which the load acts, where it names them [m].
-/// @throws ModelError where they are beyond the line.
+/// The arc lengths between which the load acts, as far as it names them [m].
+/// @throws ModelError if they are beyond the line.
 std::vector<double> ends_of(const scene::DistributedLoad& load, const Centreline& centreline);
 
 /// Per link; empty for rigid ones.
 using LinkMeshes = std::vector<std::optional<LinkMesh>>;
 
-/// Where the scene lets joint coordinates start.
+/// Initial positions of joint coordinates.
 class InitialPositions {
  public:
   explicit InitialPositions(const scene::SceneDescription& scene);
-  /// What the scene gives, else `otherwise` [m or rad].
+  /// The position that the scene gives, or else `otherwise` [m or rad].
   double of(const std::string& coordinate, double otherwise = 0) const;
 
  private:

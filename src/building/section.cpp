@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-/// Area [m^2], second moments and torsion constant [m^4], shear correction factors, edge distance [m].
+/// Area [m^2], second moments and torsion constant [m^4], shear correction factors, and edge distance [m] of a shape.
 struct Geometry {
   double area, i2, i3, torsion, k2, k3, radius;
 };
@@ -136,7 +136,7 @@ scene::MatrixSection blend(const scene::MatrixSection& a, const scene::MatrixSec
 
 scene::GeometricSection blend(const scene::GeometricSection& a, const scene::GeometricSection& b, double t);
 
-/// Of two values of one kind.
+/// Blends two variants that hold the same type.
 template <class Variant>
 Variant blend_alike(const Variant& a, const Variant& b, double t) {
   return std::visit([&](const auto& one) -> Variant { return blend(one, std::get<std::decay_t<decltype(one)>>(b), t); },

@@ -37,9 +37,9 @@ class SectionLine {
 
   bool is_uniform() const { return uniform_.has_value(); }
   SectionProperties at(double arc_length) const;
-  /// Where it is known, ascending; nothing where it is uniform.
+  /// Arc lengths at which the section is given, ascending; empty if it is uniform.
   const std::vector<double>& stations() const { return stations_.arc_lengths; }
-  /// For display [m].
+  /// Largest radius along the line, for display [m].
   double largest_radius() const;
 
  private:

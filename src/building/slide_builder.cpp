@@ -27,7 +27,7 @@ std::vector<int> SlideBuilder::welded_beams(int link) const {
     if (!joint || joint->kind != scene::JointKind::Fixed) return false;
     const LinkFrame &parent = model_.links[plan_.links[joint->parent]],
                     &child = model_.links[plan_.links[joint->child]];
-    return parent.beam && child.beam && continues(parent.beam->tip.node, child.frame.node);  // where both have a place
+    return parent.beam && child.beam && continues(parent.beam->tip.node, child.frame.node);  // both have nodes already
   };
   std::vector<int> chain = {link};
   while (is_weld(plan_.tree.above[chain.back()])) chain.push_back(plan_.links[plan_.tree.above[chain.back()]->parent]);
@@ -83,9 +83,10 @@ Attachment SlideBuilder::add(const scene::JointDescription& joint) {
   const int parent = plan_.links[joint.parent];
   if (!plan_.meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
   if (!joint.origin.position.isZero(0))
-    throw ModelError(where +
-                     "the place on the line is 'start', beside it is 'offset'; xyz of the joint's <origin> must "
-                     "be 0 0 0");
+    throw ModelError(
+        where +
+        "give the place on the line by 'start' and the distance from the line by 'offset'; xyz of the joint's "
+        "<origin> must be 0 0 0");
   const SlideScheme* scheme = find_slide_scheme(slide.scheme);
   if (!scheme) throw ModelError(where + "unknown slide scheme '" + slide.scheme + "'");
   const LinkMesh& mesh = *plan_.meshes[parent];
@@ -108,7 +109,8 @@ Attachment SlideBuilder::add(const scene::JointDescription& joint) {
   if (slide.on_end == scene::SlideDescription::End::Stop)
     travel.limits = scene::JointLimits{line.begin(), line.end(), 0, slide.restitution};
   mechanism_.add_coordinates(travel, {name});
-  // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
+  // The joint's frame is fixed to the section. Its given orientation is that in the link, where the slide starts on the
+  // undeformed line.
   const Pose section = mesh.centreline.at(slide.start);
   const Pose frame{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation};
   return {node, frame * Pose{slide.offset, Quaternion::Identity()}};

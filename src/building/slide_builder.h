@@ -1,5 +1,5 @@
 #pragma once
-/// Lines on which something slides, and the sections that slide on them (internal to building/).
+/// Builds lines on which something slides, and the sections that slide on them (internal to building/).
 
 #include <vector>
 
@@ -9,24 +9,24 @@ namespace flexarm {
 
 class SlideBuilder {
  public:
-  /// The plan and the mechanism must outlive it.
+  /// `plan` and `mechanism` must outlive this object.
   SlideBuilder(const ScenePlan& plan, Mechanism& mechanism)
       : plan_(plan), mechanism_(mechanism), model_(mechanism.model) {}
 
-  /// Adds the section that slides along the parent's line; what the joint moves hangs on it.
+  /// Adds the section that slides along the parent's line. Returns the frame to which the moved links attach.
   /// @throws ModelError
   Attachment add(const scene::JointDescription& joint);
-  /// Lets the arc length of the slide made last follow the angle of its joint, both added last.
+  /// Makes the arc length of the last slide follow the angle of its joint. The two coordinates must be the last ones.
   void couple(const scene::JointDescription& joint);
 
  private:
-  /// The smooth stretch that contains where a slide on a flexible link starts, over beams welded to it; made once.
-  /// Arc lengths count from the link's origin, and are negative before it.
+  /// Index of the smooth line on which a slide starts; it may go over beams that are welded to the link. Each line is
+  /// made once. Arc lengths count from the link's origin, and are negative before it.
   int slide_line(int link, const scene::SlideDescription& slide);
   int add_line(const SlideLine& line);
-  /// True where the section of node `after` is that of node `before` in place and direction.
+  /// Whether the section of node `after` continues that of node `before`, in place and direction.
   bool continues(int before, int after) const;
-  /// The links whose beams are fixed tip to origin without a kink, one of them `link`, in order.
+  /// The links, `link` among them, whose beams are fixed to each other from tip to origin without a kink, in order.
   std::vector<int> welded_beams(int link) const;
 
   const ScenePlan& plan_;

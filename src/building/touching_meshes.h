@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes of <collision>, by which links touch.
+/// Meshes of <collision> elements, for contacts.
 
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@ namespace flexarm {
 
 /// The convex hulls of a mesh, see meshes::hulls_of_file(). A file is read once, as long as it does not change.
 /// `scene_file`: see scene::path_of_resource().
-/// @throws std::runtime_error saying why, if it is not found or cannot be read
+/// @throws std::runtime_error that says why, if it is not found or cannot be read
 using Polytopes = std::vector<std::shared_ptr<const Polytope>>;
 Polytopes hulls_of_mesh(const scene::MeshShape& mesh, const std::string& scene_file);
 

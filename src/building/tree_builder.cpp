@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// Values at the start of the coordinates of these names, which belong to one elementary joint.
+/// Initial values of the coordinates with these names, which belong to one elementary joint.
 Released initial_released(JointMapKind kind, const std::vector<std::string>& names, const InitialPositions& positions) {
   Released out;
   std::vector<double> values;
@@ -33,7 +33,7 @@ class TreeBuilder {
     model_.origin = plan_.origin;
     model_.floats = plan_.floats;
     model_.initial_origin = plan_.start_origin;
-    // Those of beams; joints, which are few beside them, may add as many as they like.
+    // Room for the nodes of beams, and for two nodes per joint; joints may add more.
     std::size_t count = 0;
     for (const std::optional<LinkMesh>& link : plan_.meshes)
       if (link) count += link->mesh.nodes.size();
@@ -50,11 +50,11 @@ class TreeBuilder {
     Attachment frame = attachment(plan_, model_, joint.parent, joint.origin.position);
     frame.offset = frame.offset * joint.origin;
     if (joint.kind == scene::JointKind::Fixed) {
-      // Of links that were attached beside the line of a beam.
+      // For links that were attached beside the line of a beam.
       const Pose& on_child = joint.child_origin;
       if (!on_child.position.isZero(0) || !on_child.orientation.vec().isZero(0))
         frame.offset = frame.offset * on_child.inverse();
-      // What is asked for its reaction needs a node of its own.
+      // A link whose reaction is measured needs a node of its own.
       if (!plan_.meshes[child] && measures_reaction(plan_.scene, joint.child))
         frame = {tree_.add_rigid(frame.node, frame.offset), Pose()};
       place_link(child, frame);
@@ -70,7 +70,7 @@ class TreeBuilder {
     return {&joint, first, end - first};
   }
 
-  /// A joint that is held at `position`; returns the frame of its child, as that of a fixed joint.
+  /// Adds a joint that is held at `position`. Returns the frame of its child, as for a fixed joint.
   Attachment add_held(const scene::JointDescription& joint, double position, const Attachment& frame) {
     JointMap map = elementary_joints(joint).front();
     place(map, frame.offset);
@@ -85,7 +85,7 @@ class TreeBuilder {
     return {frame.node, Pose{child.position, child.orientation}};
   }
 
-  /// A section that slides, and what turns on it.
+  /// Adds a section that slides, and the joint of its rotation.
   JointChain add_slide(const scene::JointDescription& joint) {
     const int slide = next_map(), child = plan_.links[joint.child];
     Attachment frame = slides_.add(joint);
@@ -93,7 +93,7 @@ class TreeBuilder {
     scene::JointDescription released = joint;
     released.kind = joint.slide->rotation;
     if (released.kind == scene::JointKind::Fixed) {
-      // What leaves the line needs a node of its own.
+      // A link that leaves the line needs a node of its own.
       if (leaves) {
         model_.joints[slide].leaving = slide + 1;
         frame = {tree_.add_rigid(frame.node, frame.offset), Pose()};
@@ -102,7 +102,7 @@ class TreeBuilder {
       return {&joint, slide, 1};
     }
     released.limits.reset();
-    released.direction = joint.origin.orientation.conjugate() * Vector3::UnitX();  // of the line
+    released.direction = joint.origin.orientation.conjugate() * Vector3::UnitX();  // direction of the line
     std::vector<std::string> names = coordinate_names(joint);
     names.erase(names.begin());  // the slide's own
     const int node = add_maps(released, names, frame);
@@ -113,7 +113,7 @@ class TreeBuilder {
     return {&joint, slide, end - slide};
   }
 
-  /// The chain of a joint whose coordinates have these names; returns its last node, which moves the child.
+  /// Adds the chain of a joint whose coordinates have these names. Returns its last node, which moves the child.
   int add_maps(const scene::JointDescription& joint, const std::vector<std::string>& names, const Attachment& frame) {
     const std::optional<LinkMesh>& child = plan_.meshes[plan_.links[joint.child]];
     std::vector<JointMap> maps = elementary_joints(joint);
@@ -137,7 +137,7 @@ class TreeBuilder {
     return node;
   }
 
-  /// The last node of a joint: the first node of a beam, or the frame of a rigid link.
+  /// Places a link at the last node of its joint: as the first node of a beam, or as the frame of a rigid link.
   void place_child(int link, int node) {
     if (plan_.meshes[link])
       place_beam(link, node);

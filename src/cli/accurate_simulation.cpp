@@ -1,5 +1,6 @@
 #include "cli/accurate_simulation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr int kJudgedTimes = 100;
 
-/// "elements: arm 5, forearm 3"; those that were chosen.
+/// Lists the numbers of elements that were chosen: "elements: arm 5, forearm 3".
 std::string names_of(const scene::SceneDescription& scene, const RunSettings& settings) {
   std::string text = "elements:";
   auto beam = settings.beams.begin();
@@ -37,14 +38,14 @@ std::string names_of(const scene::SceneDescription& scene, const RunSettings& se
 }
 
 struct ChosenMeshes {
-  double left;       ///< of the accuracy, for the steps
-  double error = 0;  ///< of the meshes, as estimated, relative
+  double left;       ///< part of the accuracy that is left for the steps
+  double error = 0;  ///< estimated error of the meshes, relative
   bool is_met = true;
 };
 
-/// Where beams ask for elements="auto", makes the simulation one whose meshes are chosen for the accuracy; says so on
-/// the report's stream, and on the standard error output where they do not keep it. Nothing changes where a state is
-/// read or kept: it is one of the scene's own meshes.
+/// If beams have elements="auto", rebuilds the simulation with meshes that are chosen for the accuracy, and says so on
+/// the report's stream. Says on standard error if the meshes do not meet the accuracy. Changes nothing if a state is
+/// read or saved, since such a state belongs to the scene's own meshes.
 ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation) {
   if (!arguments.resume.empty() || !arguments.checkpoint.empty()) return {accuracy};
   const scene::SceneDescription scene = simulation.scene();
@@ -57,7 +58,7 @@ ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, 
   bar.clear();
   if (!meshes.is_met)
     fmt::print(stderr, "flexarm: elements=\"auto\": the accuracy {:g} was not met: {}\n", accuracy, meshes.shortcoming);
-  if (meshes.is_chosen) {  // else those of the present rule stay
+  if (meshes.is_chosen) {  // else the meshes stay as they are
     if (!arguments.quiet)
       fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
                  names_of(scene, meshes.settings), meshes.error, meshes.runs);
@@ -72,7 +73,7 @@ ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, 
 
 namespace {
 
-/// Writes the rows of each try over those of the one before, and shows how far it is.
+/// Writes the rows of each try over those of the last one, and shows progress.
 class TryOutput : public RunWatcher {
  public:
   TryOutput(const SimulateArguments& arguments, Run& run, double begin)
@@ -81,7 +82,7 @@ class TryOutput : public RunWatcher {
   void begin(const Simulation& simulation, long steps, double estimate) override {
     label_ = std::isnan(estimate) ? fmt::format("{} steps", steps)
                                   : fmt::format("{} steps, error about {:.1e}", steps, estimate);
-    output_.reset();  // writes to the summary
+    output_.reset();  // before run_.summary is replaced, since the writer updates it
     run_.summary = RunSummary(simulation);
     output_ = open_output(arguments_, simulation, run_.summary);
   }
@@ -117,36 +118,49 @@ class TryOutput : public RunWatcher {
   ProgressBar progress_;
   std::string label_;
   std::unique_ptr<ResultWriter> output_;
-  std::optional<StepResult> last_;  // waits for the estimate
+  std::optional<StepResult> last_;  // kept until its error estimate is known
 };
+
+constexpr double kMostIntervals = 1e6;
+
+/// The largest rate of outputs that show instants at a rate [1/s]; 0 if there is none.
+double rate_of_instants(const SimulateArguments& arguments) {
+  const double page = is_page(arguments.output) ? arguments.page_rate : 0;
+  return std::max(page, arguments.vtk.empty() ? 0 : arguments.vtk_rate);
+}
 
 AccuracyRequest request_of(const SimulateArguments& arguments, double accuracy, const Simulation& simulation) {
   AccuracyRequest request{accuracy, arguments.until};
+  // No more instants than the outputs take, so that these have equal distances.
+  if (const double rate = rate_of_instants(arguments); arguments.interval == 0 && rate > 0)
+    request.intervals = static_cast<int>(
+        std::clamp(std::floor((1 + 1e-9) * (arguments.until - simulation.time()) * rate), 1.0, kMostIntervals));
   if (arguments.interval == 0) return request;
   const double count = (arguments.until - simulation.time()) / arguments.interval;
   request.intervals = static_cast<int>(std::lround(count));
-  constexpr double kMost = 1e6;
-  if (!(count < kMost) || request.intervals < 1 || std::abs(count - request.intervals) > 1e-9 * count)
-    throw InputError(
-        fmt::format("flexarm: --interval: expected a whole part of the {:g} s until --until, down to 1e-6 "
-                    "of them, got {:g} s",
-                    arguments.until - simulation.time(), arguments.interval));
+  if (!(count < kMostIntervals) || request.intervals < 1 || std::abs(count - request.intervals) > 1e-9 * count)
+    throw InputError(fmt::format(
+        "flexarm: --interval: expected the {:g} s until --until divided by a whole number up to 1e6, got {:g} s",
+        arguments.until - simulation.time(), arguments.interval));
   return request;
 }
 
 void check(const SimulateArguments& arguments) {
   if (is_standard_output(arguments.output))
-    throw InputError("flexarm: --output: with an accuracy, a file is expected: each try writes it anew");
-  if (arguments.every != 1) throw InputError("flexarm: --every: with an accuracy, rows are an --interval apart");
+    throw InputError("flexarm: --output: with an accuracy, a file is expected, since each try overwrites it");
+  if (!arguments.commands.empty())
+    throw InputError("flexarm: --commands cannot be used with an accuracy: choose a step by --step");
+  if (arguments.every != 1) throw InputError("flexarm: --every cannot be used with an accuracy: use --interval");
   if (arguments.checkpoint_every > 0)
-    throw InputError("flexarm: --checkpoint-every: a run with an accuracy has states to keep at its end only");
+    throw InputError("flexarm: --checkpoint-every cannot be used with an accuracy: only the final state can be saved");
 }
 
-/// By what errors are divided; of points that hardly move it is not their way.
+/// The length by which errors are divided. If points hardly move, it is not their largest displacement.
 std::string scale_text(const AccurateRun& run) {
   const double way = run.motion.largest_displacement();
   if (way >= run.scale) return fmt::format("{:.3g} m", run.scale);
-  return fmt::format("{:.3g} m (a millionth of the mechanism's size: points move by {:.2g} m)", run.scale, way);
+  return fmt::format("{:.3g} m (a millionth of the mechanism's size, since points move by only {:.2g} m)", run.scale,
+                     way);
 }
 
 }  // namespace
@@ -159,7 +173,7 @@ std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const 
 Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation) {
   check(arguments);
   const ChosenMeshes meshes = choose_meshes(arguments, accuracy, simulation);
-  arguments.estimates_error = true;  // each try has an estimate anyway
+  arguments.estimates_error = true;  // each try computes an estimate anyway
   const AccuracyRequest request = request_of(arguments, meshes.left, simulation);
   const auto start = std::chrono::steady_clock::now();
   Run run{{}, RunSummary(simulation)};
@@ -180,7 +194,8 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
     fmt::print(stderr, "flexarm: {}\n", shortcoming(result, accuracy, meshes.error));
   else if (run.is_accurate && !arguments.quiet)
     fmt::print(report_stream(arguments),
-               "accuracy {:g} asked for, error {:.2g} estimated, of {}; {} steps of {}; {} tries, {} steps in all\n",
+               "accuracy {:g} requested, error {:.2g} estimated, relative to {}; {} steps of {}; {} tries, {} steps in "
+               "total\n",
                accuracy, result.estimate() + meshes.error, scale_text(result), result.tries.back().steps,
                result.scheme(), result.tries.size(), result.steps);
   return run;

@@ -12,6 +12,7 @@
 #include "flexarm/simulation/driven_ends.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
+#include "scene/joint_kind_names.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -20,49 +21,24 @@ namespace {
 
 constexpr int kModes = 6;
 
-const char* name_of(scene::JointKind kind) {
-  switch (kind) {
-    case scene::JointKind::Fixed:
-      return "fixed";
-    case scene::JointKind::Revolute:
-      return "revolute";
-    case scene::JointKind::Continuous:
-      return "continuous";
-    case scene::JointKind::Prismatic:
-      return "prismatic";
-    case scene::JointKind::Planar:
-      return "planar";
-    case scene::JointKind::Floating:
-      return "floating";
-    case scene::JointKind::Spherical:
-      return "spherical";
-    case scene::JointKind::Universal:
-      return "universal";
-    case scene::JointKind::Screw:
-      return "screw";
-    case scene::JointKind::RackAndPinion:
-      return "rack_and_pinion";
-    case scene::JointKind::Worm:
-      return "worm";
-    case scene::JointKind::Cam:
-      return "cam";
-    case scene::JointKind::Slide:
-      return "slide";
-    case scene::JointKind::Cylindrical:
-      return "cylindrical";
-  }
-  return "";
+/// Joints of the tree and those that close loops.
+std::vector<scene::JointDescription> shown_joints(const scene::SceneDescription& scene) {
+  std::vector<scene::JointDescription> shown;
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    std::copy_if(joints->begin(), joints->end(), std::back_inserter(shown),
+                 [](const scene::JointDescription& joint) { return !joint.is_hidden; });
+  return shown;
 }
 
 void print_size(const Simulation& simulation) {
   const scene::SceneDescription& scene = simulation.scene();
   fmt::print("scene '{}': {} links, {} joints, {} nodes, {} degrees of freedom\n", scene.name, scene.links.size(),
-             scene.joints.size() + scene.loop_joints.size(), simulation.node_count(), simulation.degrees_of_freedom());
+             shown_joints(scene).size(), simulation.node_count(), simulation.degrees_of_freedom());
   fmt::print("scheme {}, step {} s, gravity {} {} {} m/s^2\n", simulation.scheme(), simulation.step_size(),
              scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
 }
 
-/// "at least 0 and at most 300"; empty: it may be anything.
+/// "at least 0 and at most 300"; empty if the parameter has no limits.
 std::string limits_text(const scene::ParameterDescription& parameter) {
   const std::string least = parameter.min ? fmt::format("at least {:.6g}", *parameter.min) : "",
                     most = parameter.max ? fmt::format("at most {:.6g}", *parameter.max) : "";
@@ -84,7 +60,7 @@ void print_plane(const Simulation& simulation) {
   fmt::print("steps are taken in the plane with the normal {:.6g} {:.6g} {:.6g}\n", normal.x(), normal.y(), normal.z());
 }
 
-/// Of a link with a beam.
+/// Figures of a link with a beam.
 struct Line {
   double length, mass;
   std::string elements;
@@ -116,14 +92,20 @@ void print_links(const Simulation& simulation) {
 }
 
 void print_joints(const Simulation& simulation) {
-  std::vector<scene::JointDescription> joints = simulation.scene().joints;
-  const std::vector<scene::JointDescription>& loops = simulation.scene().loop_joints;
-  joints.insert(joints.end(), loops.begin(), loops.end());
-  if (joints.empty()) return;
+  const scene::SceneDescription& scene = simulation.scene();
+  const std::vector<scene::JointDescription> shown = shown_joints(scene);
+  if (shown.empty()) return;
   fmt::print("\n{:<24} {:<12} {:<20} {:<20} {}\n", "joint", "kind", "parent", "child", "coordinates");
-  for (const scene::JointDescription& joint : joints)
-    fmt::print("{:<24} {:<12} {:<20} {:<20} {}\n", joint.name, name_of(joint.kind), joint.parent, joint.child,
+  for (scene::JointDescription joint : shown) {
+    std::string kind = name_of(joint.kind);
+    // A cylinder is a row with the links that it connects.
+    for (const scene::JointDescription& hinge : scene.joints)
+      if (hinge.is_hidden && hinge.child == joint.parent) joint.parent = hinge.parent, kind = "cylinder";
+    for (const scene::JointDescription& pin : scene.loop_joints)
+      if (pin.is_hidden && pin.parent == joint.child) joint.child = pin.child;
+    fmt::print("{:<24} {:<12} {:<20} {:<20} {}\n", joint.name, kind, joint.parent, joint.child,
                scene::coordinate_suffixes(joint).size());
+  }
 }
 
 void print_force_elements(const Simulation& simulation) {
@@ -132,18 +114,19 @@ void print_force_elements(const Simulation& simulation) {
   if (!described.empty()) fmt::print("\n{:<24} {:<12} {:<40} {}\n", "between points", "kind", "links", "law");
   for (std::size_t i = 0; i < described.size(); ++i) {
     std::vector<std::string> links;
-    for (const scene::LinkPoint& point : described[i]->points()) links.push_back(point.link);
+    for (const scene::LinkPoint& point : described[i]->points())
+      if (links.empty() || links.back() != point.link) links.push_back(point.link);
     fmt::print("{:<24} {:<12} {:<40} {}\n", elements[i]->name().empty() ? "-" : elements[i]->name(),
                elements[i]->kind(), fmt::format("{}", fmt::join(links, ", ")), elements[i]->description());
   }
 }
 
-/// "200", or "100 ... 200"
+/// "200", or "100 ... 200".
 std::string range_text(double least, double most) {
   return least == most ? fmt::format("{:.4g}", least) : fmt::format("{:.4g} ... {:.4g}", least, most);
 }
 
-/// What elements of a pair have to touch with, and their law.
+/// The number of contact points of a pair, and the law with which they touch.
 std::string law_text(const ForceElementList& elements, const TouchingPair& pair) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   TouchLaw all;
@@ -161,7 +144,7 @@ std::string law_text(const ForceElementList& elements, const TouchingPair& pair)
   return out;
 }
 
-/// How a pair touches now.
+/// Whether a pair touches at present, and how deep.
 std::string touch_text(const Simulation& simulation, std::size_t pair) {
   constexpr double kRoundOff = 1e-9;  // m
   std::vector<double> values;
@@ -181,7 +164,7 @@ void print_contacts(const Simulation& simulation) {
                law_text(model.force_elements, pairs[i]));
 }
 
-/// Lengths in m, stiffnesses in N and N m^2, mass in kg.
+/// Prints the beams: lengths in m, stiffnesses in N and N m^2, mass in kg.
 void print_beams(const Simulation& simulation) {
   bool is_first = true;
   const std::vector<scene::LinkDescription>& links = simulation.scene().links;
@@ -208,9 +191,9 @@ void print_beams(const Simulation& simulation) {
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }
 
-/// The loop joint, of a scene that has some, in whose loop a link is.
+/// The loop joint whose loop contains a link. The scene must have loop joints.
 std::string loop_joint_of(const scene::SceneDescription& scene, const std::string& link) {
-  const auto hangs_on = [&](std::string child) {  // whether the chain from there to the root goes over the link
+  const auto hangs_on = [&](std::string child) {  // whether `link` is on the chain from `child` to the root
     while (child != link && child != scene.root_link)
       child = std::find_if(scene.joints.begin(), scene.joints.end(), [&](const scene::JointDescription& joint) {
                 return joint.child == child;
@@ -230,8 +213,8 @@ void print_dead_point(const Simulation& simulation) {
   const std::string link = link_at_dead_point(model_of(simulation), state_of(simulation), contact_time);
   if (link.empty()) return;
   fmt::print(
-      "\nat a dead point: the loop that joint '{}' closes is free to move in first order, and strains link '{}' in the "
-      "second; how it goes on is up to small disturbances: start it beside that by <initial>\n",
+      "\nat a dead point: the loop that joint '{}' closes can move without force to first order, but strains link '{}' "
+      "to second order; small disturbances decide how it moves on: start it a little away from there, by <initial>\n",
       loop_joint_of(simulation.scene(), link), link);
 }
 
@@ -245,24 +228,26 @@ void print_driven_ends(const Simulation& simulation) {
   const std::vector<DrivenEnd> ends = driven_ends(simulation);
   if (ends.empty()) return;
   fmt::print("\n{:<24} {:>14} {:>14} {:>14}\n", "driven at a beam's end", "within a step", "in all", "shakes beyond");
-  for (const DrivenEnd& end : ends)
-    fmt::print("{:<24} {:>14.3g} {:>14.3g} {:>14.3g}\n", end.coordinate, end.within_step, end.whole,
-               2 * end.within_step / simulation.step_size());
+  constexpr std::size_t kMostShown = 12;
+  for (std::size_t i = 0; i < std::min(ends.size(), kMostShown); ++i)
+    fmt::print("{:<24} {:>14.3g} {:>14.3g} {:>14.3g}\n", ends[i].coordinate, ends[i].within_step, ends[i].whole,
+               ends[i].shakes_beyond);
+  if (ends.size() > kMostShown) fmt::print("and {} more\n", ends.size() - kMostShown);
   fmt::print(
-      "(kg m^2 that resist the drive: within a step, in which the beam gives way, and in all. A controller outside "
-      "that\n"
-      " acts once a step shakes the joint where it damps by more than the last column says [N m s/rad], and by less "
-      "where\n"
-      " the beam has little <damping>; a <hub> of the beam, or rotor_inertia of a <drive>, allows more)\n");
+      "(Inertia that resists the drive [kg m^2]: within one step, while the beam bends, and in total. A controller\n"
+      " outside flexarm that acts once a step makes the joint shake if it damps by more than the last column\n"
+      " [N m s/rad], or by less if the beam has little <damping>. A <hub> of the beam, or rotor_inertia of a\n"
+      " <drive>, allows more.)\n");
 }
 
 void print_frequencies(Simulation& simulation) {
   if (simulation.degrees_of_freedom() == 0) return;
   if (!are_modes_quick(simulation)) {
-    fmt::print("\nnatural frequencies are left out, as they would take long here: flexarm modes\n");
+    fmt::print(
+        "\nnatural frequencies are not computed, since they would take long here; flexarm modes computes them\n");
     return;
   }
-  // Free motions say nothing about the beams.
+  // Asks for as many more modes as there may be free motions, since these say nothing about the beams.
   const auto [modes, is_equilibrium] =
       modes_about_equilibrium(simulation, kModes + static_cast<int>(simulation.coordinate_names().size()));
   fmt::print("\n");
@@ -277,7 +262,7 @@ void print_frequencies(Simulation& simulation) {
   fmt::print("first natural frequencies there [Hz]:");
   for (const Mode& mode : oscillating) fmt::print(" {:.6g}", mode.frequency);
   if (oscillating.empty()) fmt::print(" none");
-  if (free > 0) fmt::print(" (and {} that nothing holds)", free == 1 ? "1 motion" : fmt::format("{} motions", free));
+  if (free > 0) fmt::print(" (and {})", free == 1 ? "1 free motion" : fmt::format("{} free motions", free));
   fmt::print("\n");
   if (std::any_of(oscillating.begin(), oscillating.end(), [](const Mode& mode) { return mode.rate != 0; })) {
     fmt::print("their damping ratios:");

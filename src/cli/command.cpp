@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "cli/exit_status.h"
-#include "math/near_names.h"
+#include "flexarm/math/near_names.h"
 #include "math/number_text.h"
 
 namespace flexarm::cli {
@@ -217,9 +217,9 @@ const Option* Command::find(const std::string& name) const {
 
 // ---------------------------------------------------------------- help
 
-/// What Boost knows of the options.
+/// The options in the form that Boost needs.
 struct Command::Described {
-  /// Each heading's, for parsing and for the help.
+  /// All headings with their options, for parsing and for the help.
   static po::options_description all(const Command& command) {
     constexpr unsigned kLineLength = 100;
     po::options_description all(kLineLength), own("Help", kLineLength);
@@ -233,7 +233,7 @@ struct Command::Described {
         if (option.heading_ == heading) group.add(one(option));
       all.add(group);
     }
-    own.add_options()("help,h", "prints this");
+    own.add_options()("help,h", "prints this help");
     all.add(own);
     return all;
   }
@@ -265,9 +265,9 @@ void Command::print_help() const {
 // ---------------------------------------------------------------- what is typed
 
 struct Command::Typed {
-  std::map<const Option*, std::vector<Words>> options;  // with the words of each time that it is there
+  std::map<const Option*, std::vector<Words>> options;  // with the words of each occurrence
   Words arguments;
-  Words* last_list = nullptr;  // of the option that all others stand before, if it takes several words
+  Words* last_list = nullptr;  // words of the last option, if it takes several words
   bool wants_help = false;
 };
 
@@ -286,7 +286,8 @@ int Command::run(const Words& words) const {
   const auto take = [this](const Option& option, const std::vector<Words>& occurrences) {
     if (const std::string wrong = option.take(occurrences); !wrong.empty()) fail(option.name_ + ": " + wrong);
   };
-  for (const Option& option : options_)  // before the arguments: a word too many of an option is one too few of those
+  for (const Option& option :
+       options_)  // before the arguments: if an option takes a word too many, an argument is missing
     if (const auto given = typed.options.find(&option); given != typed.options.end()) take(option, given->second);
   require_arguments(typed);
   for (std::size_t i = 0; i < arguments_.size(); ++i) take(arguments_[i], {{typed.arguments[i]}});
@@ -294,7 +295,7 @@ int Command::run(const Words& words) const {
 }
 
 Command::Typed Command::take_apart(const Words& words) const {
-  // All of unix's but guessing: what is short for an option today may be short for two tomorrow.
+  // All styles of unix but guessing: an abbreviation that is unique today may be ambiguous with later options.
   namespace style = po::command_line_style;
   constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next | style::allow_short |
                          style::short_allow_adjacent | style::short_allow_next | style::allow_dash_for_short;
@@ -332,7 +333,7 @@ void Command::fail_unknown(const std::string& token) const {
   fail("there is no option '" + typed + "'" + suggestion(typed, names));
 }
 
-/// The last words of a list are what else would be missing: `--set mass=1 scene.urdf`.
+/// If arguments are missing, the last words of a list become arguments: `--set mass=1 scene.urdf`.
 void Command::leave_arguments(Typed& typed) const {
   if (!typed.last_list || typed.arguments.size() >= arguments_.size()) return;
   Words& list = *typed.last_list;
@@ -368,7 +369,7 @@ std::vector<Completion> Command::complete(const Words& words) const {
   if (typed.empty() || typed[0] != '-') return {};
   std::vector<Completion> all;
   for (const Option& option : options_) all.push_back({option.name_, option.help_});
-  all.push_back({"--help", "prints this"});
+  all.push_back({"--help", "prints this help"});
   return completions_of(typed, all);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A command and its options, declared once: for what is typed (taken apart by Boost), for help and for completion.
+/// Declares a command and its options, once for parsing (by Boost), help and completion.
 
 #include <deque>
 #include <functional>
@@ -13,17 +13,17 @@ using Words = std::vector<std::string>;
 
 // ---------------------------------------------------------------- words
 
-/// What is wrong with a word; empty: nothing.
+/// Says what is wrong with a word; empty: nothing.
 using Check = std::function<std::string(const std::string& word)>;
 
 Check whole_number_between(int least, int most);
-/// A finite number > 0, or >= 0.
+/// Accepts a finite number > 0, or >= 0.
 std::string check_positive(const std::string& word);
 std::string check_non_negative(const std::string& word);
-/// A file that is there.
+/// Accepts an existing file.
 std::string check_existing_file(const std::string& word);
 
-/// Takes words as a value; returns what is wrong with them.
+/// Converts words to a value. @returns what is wrong with the words, or ""
 std::string read_words(const Words& words, std::string& value);
 std::string read_words(const Words& words, double& value);
 std::string read_words(const Words& words, int& value);
@@ -39,7 +39,7 @@ std::string read_words(const Words& words, std::vector<T>& values) {
   return "";
 }
 
-/// A value as it is typed.
+/// The text that a user would type for a value.
 std::string text_of(const std::string& value);
 std::string text_of(double value);
 std::string text_of(int value);
@@ -54,7 +54,7 @@ std::string text_of(const std::vector<T>& values) {
   return text;
 }
 
-/// What stands for a value in the help.
+/// The placeholder for a value in the help.
 inline const char* kind_of_words(const std::string&) {
   return "TEXT";
 }
@@ -84,92 +84,93 @@ constexpr bool takes_several(const std::vector<T>&) {
 
 // ---------------------------------------------------------------- options
 
-/// What a command takes: an option with its words, a flag, which has none, or an argument, which has no name.
+/// A parameter of a command: an option with words, a flag (an option without words), or an argument (a word without an
+/// option's name).
 class Option {
  public:
-  /// Keeps the words, or says what is wrong with them.
+  /// Stores the value of the words. @returns what is wrong with them, or ""
   using Read = std::function<std::string(const Words& words)>;
 
-  /// Each word must pass.
+  /// Adds a check that each word must pass.
   Option& check(Check check);
-  /// Each word is one of these; help and completion list them.
+  /// Limits each word to these choices, which help and completion list.
   Option& choices(Words choices);
-  /// In the help, in the place of the kind of its words.
+  /// Sets the placeholder for the words in the help.
   Option& shown_as(const std::string& words);
-  /// What it is without this option is in the help.
+  /// Shows the default value in the help.
   Option& shows_default();
-  /// A word may be several, with commas between them.
+  /// Splits words at commas.
   Option& with_commas();
-  /// It is followed by so many words; else by one, or by one or more where its value is a vector.
+  /// Sets the exact number of words. By default it is one or, if the value is a vector, one or more.
   Option& takes(int words);
-  /// It is of no use without that other option.
+  /// The option is an error without the other option.
   Option& needs(const std::string& other);
-  /// Not both.
+  /// The option is an error together with the other option.
   Option& excludes(const std::string& other);
 
  private:
   friend class Command;
-  enum class Number { None, One, Several };  // of words
+  enum class Number { None, One, Several };  // number of words
 
-  std::string name_;        // "--output"; of an argument "scene"
-  std::string short_name_;  // "-o"; mostly empty
+  std::string name_;        // "--output"; for an argument "scene"
+  std::string short_name_;  // "-o"; usually empty
   std::string help_, heading_, default_, shown_as_;
   Number number_ = Number::One;
-  int exactly_ = 0;  // words; 0: as number_ says
+  int exactly_ = 0;  // number of words; 0: see number_
   bool shows_default_ = false, has_commas_ = false;
   Words choices_, needs_, excludes_;
   std::vector<Check> checks_;
   Read read_;
 
   bool has_few_choices() const;
-  /// As the help has them.
+  /// The words as the help shows them.
   std::string value_text() const;
   std::string help_text() const;
-  /// What is wrong with what was typed, how often that may be.
+  /// Takes the words of all occurrences of the option. @returns what is wrong with them, or ""
   std::string take(const std::vector<Words>& occurrences) const;
 };
 
-/// What may be typed next, and what it does.
+/// A word that may come next on the command line, and its meaning.
 struct Completion {
   std::string word, help;
 };
-/// Those that begin as what is typed does.
+/// Those of `all` that begin with `typed`.
 std::vector<Completion> completions_of(const std::string& typed, const std::vector<Completion>& all);
 
 // ---------------------------------------------------------------- commands
 
 class Command {
  public:
-  /// `full_name` is that of the program, and its own: "flexarm simulate".
+  /// @param full_name  of the program and the command: "flexarm simulate"
   Command(std::string full_name, std::string description);
 
-  /// Options that follow stand below this heading in the help.
+  /// Starts a heading in the help, for the options that follow.
   void heading(const std::string& heading) { heading_ = heading; }
 
-  // What is declared here keeps references to its values, which must outlive the command.
+  // Declared options and arguments keep references to their values, which must outlive the command.
 
-  /// A word without a name; they are expected in the order in which they are declared.
+  /// An argument. Arguments are expected in the order of their declaration.
   Option& argument(const std::string& name, std::string& value, const std::string& help);
-  /// `names`: "--output", or "-o,--output".
+  /// @param names  "--output", or "-o,--output"
   template <class T>
   Option& option(const std::string& names, T& value, const std::string& help) {
     return add(names, help, takes_several(value) ? Option::Number::Several : Option::Number::One, kind_of_words(value),
                text_of(value), [&value](const Words& words) { return read_words(words, value); });
   }
-  /// Whose words mean something else than a value.
+  /// An option whose words `read` interprets.
   Option& option_of_words(const std::string& names, Option::Read read, const std::string& help);
   Option& flag(const std::string& name, bool& value, const std::string& help);
   Option& flag(const std::string& name, const std::function<void()>& action, const std::string& help);
 
-  /// What it does; returns the exit status.
+  /// Sets the function that runs the command and returns the exit status.
   void runs(std::function<int()> run) { run_ = std::move(run); }
 
-  /// Takes the words and runs, or prints its help where they ask for that.
-  /// @throws InputError where they are not what is expected.
+  /// Parses the words and runs the command, or prints its help if the words ask for that.
+  /// @throws InputError if the words are not as declared
   int run(const Words& words) const;
 
   const std::string& description() const { return description_; }
-  /// What the last one of `words` may become; nothing: any text or file.
+  /// What the last one of `words` may be completed to. Empty: it may be any text or file.
   std::vector<Completion> complete(const Words& words) const;
 
  private:
@@ -187,7 +188,7 @@ class Command {
   [[noreturn]] void fail_unknown(const std::string& token) const;
 
   std::string full_name_, description_, heading_ = "Options";
-  std::deque<Option> arguments_, options_;  // which others hold by reference
+  std::deque<Option> arguments_, options_;  // deques, since references to their elements are kept
   std::function<int()> run_;
 };
 

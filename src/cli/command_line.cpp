@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "cli/interruptions.h"
+#include "flexarm/math/near_names.h"
 #include "flexarm/model/model_error.h"
-#include "math/near_names.h"
 
 namespace flexarm::cli {
 
@@ -36,7 +36,7 @@ std::vector<Completion> CommandLine::all() const {
 void CommandLine::print_help() const {
   fmt::print("{}\nUsage: {} [OPTIONS] SUBCOMMAND\n\nSubcommands, each with its own --help:\n", description_, name_);
   for (const Completion& one : all()) fmt::print("  {:<12} {}\n", one.word, one.help);
-  fmt::print("\nOptions:\n  {:<12} prints this\n  {:<12} prints the version\n", "-h, --help", "--version");
+  fmt::print("\nOptions:\n  {:<12} prints this help\n  {:<12} prints the version\n", "-h, --help", "--version");
 }
 
 int CommandLine::dispatch(const Words& words) const {
@@ -112,8 +112,8 @@ int printing_errors(const Run& run) {
   }
 }
 
-/// What a simulation gives back stays with the process, for the next one: the system takes longer to hand out fresh
-/// memory than building a large model takes.
+/// Keeps freed memory in the process for the next simulation: to get fresh memory from the system takes longer than to
+/// build a large model.
 void keep_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);

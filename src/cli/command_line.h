@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of a program, and how it begins and ends: `flexarm`, and `flexarm_benchmarks` behind `flexarm bench`.
+/// A program's set of commands, and its start and end. For `flexarm`, and for `flexarm_benchmarks` (`flexarm bench`).
 
 #include <deque>
 #include <functional>
@@ -13,18 +13,19 @@ namespace flexarm::cli {
 
 class CommandLine {
  public:
-  /// `name` as it is typed: "flexarm".
+  /// @param name  as the user types it: "flexarm"
   CommandLine(std::string name, std::string description);
 
-  /// Valid as long as this.
+  /// Adds a command. The reference is valid as long as this object.
   Command& command(const std::string& name, const std::string& description);
-  /// A command whose words, --help included, are another program's, which run() becomes; one like this is asked what
-  /// may be typed next.
+  /// Adds a command that is another program. All words after its name, including --help, go to `run`, which should
+  /// replace this process by that program. Kind::LikeThis: the program has a CommandLine, too, which is asked for
+  /// completions.
   enum class Kind { LikeThis, Other };
   void program(const std::string& name, const std::string& description, Kind kind,
                std::function<int(const Words& words)> run);
 
-  /// Runs the command that was typed, and prints what it throws. To be returned by main().
+  /// Runs the command that the user typed, and prints exceptions. @returns the exit status of the program
   int run(int argc, char** argv) const;
 
  private:
@@ -41,7 +42,7 @@ class CommandLine {
   int dispatch(const Words& words) const;
   int complete(const Words& words) const;
   void print_help() const;
-  /// Names with their descriptions, in the order in which they were declared.
+  /// Names with descriptions, in the order of declaration.
   std::vector<Completion> all() const;
 
   std::string name_, description_;
@@ -49,7 +50,7 @@ class CommandLine {
   std::vector<Program> programs_;
 };
 
-/// The words by which a shell asks a program what may be typed next: this one, and behind it those so far.
+/// With this word and the words typed so far, a shell asks a program for completions.
 constexpr const char* kComplete = "--complete";
 
 }  // namespace flexarm::cli

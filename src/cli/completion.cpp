@@ -7,7 +7,7 @@
 namespace flexarm::cli {
 namespace {
 
-// Both ask the program, which knows its own options; where it has nothing to offer, a file may be meant.
+// Both scripts ask the program for completions. If it offers none, they complete file names.
 constexpr const char* kBash = R"(_flexarm() {
   local line
   COMPREPLY=()
@@ -42,7 +42,8 @@ fi
 void add_completion(CommandLine& line) {
   const auto shell = std::make_shared<std::string>();
   Command& command = line.command(
-      "completion", "Prints what lets a shell complete commands and options: eval \"$(flexarm completion bash)\"");
+      "completion",
+      "Prints a script with which a shell completes commands and options: eval \"$(flexarm completion bash)\"");
   command.argument("shell", *shell, "bash or zsh").choices({"bash", "zsh"});
   command.runs([shell] {
     fmt::print("{}", *shell == "zsh" ? kZsh : kBash);

@@ -74,7 +74,7 @@ EffortPlayer::EffortPlayer(const std::vector<EffortPulse>& pulses, const Simulat
 
 void EffortPlayer::command(Simulation& simulation) const {
   const double step = simulation.step_size(), begin = simulation.time(), end = begin + step;
-  // Times of steps are sums: what a pulse has of a step but for their round-off is all or nothing.
+  // Times of steps are sums with round-off. Pulses that overlap a step only by that much count as outside, or as full.
   constexpr double kRoundOff = 1e-6;
   for (const Track& track : tracks_) {
     double effort = 0;
@@ -87,7 +87,7 @@ void EffortPlayer::command(Simulation& simulation) const {
 }
 
 std::function<std::function<void(Simulation&)>(const Simulation&)> effort_commands(const std::string& path) {
-  if (path.empty()) return {};
+  if (path.empty()) return [](const Simulation&) { return [](Simulation&) {}; };
   return [pulses = read_effort_schedule(path).pulses](const Simulation& simulation) {
     return [player = EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
   };

@@ -1,5 +1,5 @@
 #pragma once
-/// Joint efforts played against a simulation, as scripts/demo_commands.py does for the demo.
+/// Plays joint efforts of a file in a simulation, as scripts/demo_commands.py does in the demo.
 
 #include <functional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace flexarm::cli {
 
-/// A constant effort on one joint.
+/// A constant effort on one joint for some time.
 struct EffortPulse {
   std::string joint;
   double begin, end;  ///< [s]
@@ -17,23 +17,24 @@ struct EffortPulse {
 };
 
 struct EffortSchedule {
-  double period = 0;  ///< after which scripts/demo_commands.py starts it again [s]; 0: none
+  double period = 0;  ///< the schedule repeats with this period in scripts/demo_commands.py [s]; 0: no repetition
   std::vector<EffortPulse> pulses;
 };
 
 /// Reads a file like config/demo_commands.yaml: `period` and a list of `commands`
 /// `{time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}`.
-/// @throws std::runtime_error naming the file and the line that is not understood.
+/// @throws std::runtime_error that names the file and the line that cannot be read
 EffortSchedule read_effort_schedule(const std::string& path);
 
-/// Commands the pulses of one simulation. A step's effort is the mean of the schedule over it, which has the schedule's
-/// impulse whatever the step, and is the schedule itself where every pulse begins and ends with a step.
+/// Commands the pulses in a simulation. In each step, the effort is the mean of the schedule over the step, so the
+/// impulse is exact for any step. If all pulses begin and end with steps, the efforts are exactly those of the
+/// schedule.
 class EffortPlayer {
  public:
-  /// @throws std::runtime_error for a joint that the simulation does not have or that cannot be commanded.
+  /// @throws std::runtime_error if a joint does not exist in the simulation or cannot be commanded.
   EffortPlayer(const std::vector<EffortPulse>& pulses, const Simulation& simulation);
 
-  /// Before each step.
+  /// To be called before each step.
   void command(Simulation& simulation) const;
 
  private:
@@ -44,8 +45,8 @@ class EffortPlayer {
   std::vector<Track> tracks_;
 };
 
-/// What commands the efforts of a file before each step, for any simulation of the scene; of no file: nothing.
-/// @throws std::runtime_error as read_effort_schedule(); what is returned, as EffortPlayer.
+/// Makes players of a file for any simulation of the scene, to be called before each step. An empty path: no efforts.
+/// @throws std::runtime_error as read_effort_schedule(); the returned function as EffortPlayer's constructor
 std::function<std::function<void(Simulation&)>(const Simulation&)> effort_commands(const std::string& path);
 
 }  // namespace flexarm::cli

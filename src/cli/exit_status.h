@@ -1,20 +1,21 @@
 #pragma once
-/// What programs of the command line end with.
+/// The exit status of the command-line programs, and exceptions that lead to it.
 
 #include <stdexcept>
 
 namespace flexarm::cli {
 
-/// A command that a signal has ended has the status that a shell gives to a program killed by it.
+/// A command that a signal ends has the status that shells report for programs killed by this signal.
 enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 128 /* + the signal's number */ };
 
-/// What the user gave cannot be used; what() is printed and the exit status is kBadInput.
+/// The user's input cannot be used. what() is printed, and the exit status is kBadInput.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A signal wants the program to end: what() says how far it came, the exit status is kInterrupted and its number.
+/// A signal ended the program early. what() says how far it came; the exit status is kInterrupted plus the signal's
+/// number.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

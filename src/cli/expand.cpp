@@ -29,10 +29,10 @@ int expand(const ExpandArguments& arguments) {
 
 void add_expand(CommandLine& line) {
   const auto arguments = std::make_shared<ExpandArguments>();
-  Command& command = line.command(
-      "expand", "Writes a scene with numbers in the place of its expressions, for programs that know none");
+  Command& command =
+      line.command("expand", "Replaces a scene's expressions by numbers, for programs that do not support expressions");
   add_scene(command, arguments->scene);
-  command.option("--output", arguments->output, "file for it; -: standard output").shown_as("FILE").shows_default();
+  command.option("--output", arguments->output, "output file; -: standard output").shown_as("FILE").shows_default();
   command.runs([arguments] { return expand(*arguments); });
 }
 

@@ -14,12 +14,12 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe", error).parent_path();
 }
 
-/// Of an installation: the program is in <prefix>/lib/flexarm.
+/// The share folder of an installation, in which this program is <prefix>/lib/flexarm/flexarm.
 fs::path share() {
   return program_folder().parent_path().parent_path() / "share/flexarm";
 }
 
-/// The first of these that is there.
+/// The first of the places that exists.
 std::optional<std::string> first_of(const std::vector<fs::path>& places) {
   std::error_code error;
   for (const fs::path& place : places)
@@ -27,13 +27,13 @@ std::optional<std::string> first_of(const std::vector<fs::path>& places) {
   return std::nullopt;
 }
 
-std::string quoted(const std::string& path) {
+}  // namespace
+
+std::string as_shell_word(const std::string& text) {
   std::string out = "'";
-  for (const char c : path) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
 }
-
-}  // namespace
 
 std::optional<std::string> own_scenes(const std::string& folder) {
   return first_of({share() / "config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
@@ -55,9 +55,13 @@ std::optional<std::string> own_script(const std::string& name) {
 bool run_script(const std::string& script, const std::vector<std::string>& arguments) {
   const std::optional<std::string> path = own_script(script);
   if (!path) return false;
-  std::string command = "/usr/bin/python3 " + quoted(*path);
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
+  std::string command = "/usr/bin/python3 " + as_shell_word(*path);
+  for (const std::string& argument : arguments) command += " " + as_shell_word(argument);
   return std::system(command.c_str()) == 0;
+}
+
+bool open_in_browser(const std::string& path) {
+  return std::system(("xdg-open " + as_shell_word(path) + " >/dev/null 2>&1").c_str()) == 0;
 }
 
 bool draw(const std::string& script, const std::string& data, const std::string& picture) {

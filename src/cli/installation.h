@@ -1,5 +1,5 @@
 #pragma once
-/// What lies beside the program, where it is installed and in the source tree that it was built from.
+/// Finds flexarm's own files, both when it is installed and in the source tree.
 
 #include <optional>
 #include <string>
@@ -7,22 +7,28 @@
 
 namespace flexarm::cli {
 
-/// The scenes that come with flexarm, or a folder of them; empty: they are not installed.
+/// The folder of flexarm's example scenes, or a folder in it; empty: not installed.
 std::optional<std::string> own_scenes(const std::string& folder = {});
 
-/// The folder of the Python package; empty: it is not installed.
+/// The folder of the Python package; empty: not installed.
 std::optional<std::string> python_folder();
 
-/// A program that comes with flexarm, beside this one; empty: it is not installed.
+/// The path of another program of flexarm; empty: not installed.
 std::optional<std::string> own_program(const std::string& name);
 
-/// A script that comes with flexarm; empty: it is not installed.
+/// The path of a script of flexarm; empty: not installed.
 std::optional<std::string> own_script(const std::string& name);
 
-/// Runs a script that comes with flexarm by Python; false if it is not there, or fails.
+/// A text in quotes, so that a shell takes it as one word.
+std::string as_shell_word(const std::string& text);
+
+/// Runs a script of flexarm with Python. @returns false if it does not exist or fails
 bool run_script(const std::string& script, const std::vector<std::string>& arguments);
 
-/// Runs a script that draws `picture` of the file `data`; false if this machine cannot.
+/// Opens a file in the user's browser, without waiting for it. @returns false if none can be started
+bool open_in_browser(const std::string& path);
+
+/// Runs a script that plots the file `data` to `picture`. @returns false if this fails on this machine
 bool draw(const std::string& script, const std::string& data, const std::string& picture);
 
 }  // namespace flexarm::cli

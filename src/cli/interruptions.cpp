@@ -6,7 +6,7 @@
 namespace flexarm::cli {
 namespace {
 
-volatile std::sig_atomic_t noted = 0;  // the one thing that a signal handler may set
+volatile std::sig_atomic_t noted = 0;  // the only type that a signal handler may write
 
 void handle(int signal) {
   if (noted == 0) noted = signal;

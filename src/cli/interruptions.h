@@ -1,15 +1,15 @@
 #pragma once
-/// Signals that end a program, for loops to ask about.
+/// Catches signals that end a program, so that loops can ask for them and end cleanly.
 
 namespace flexarm::cli {
 
-/// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one of the same kind ends the program as usual.
-/// What is ignored already, as nohup has it and shells for what runs in the background, stays so.
+/// From then on SIGINT, SIGTERM and SIGHUP are only noted. A second signal of the same kind ends the program as usual.
+/// Signals that are already ignored stay ignored: nohup and shells (for background jobs) set them so.
 void catch_interruptions();
-/// The number of the first signal that has come; 0: none.
+/// The number of the first signal that was noted; 0: none.
 int interruption();
 
-/// What cannot be written is an error of the function that writes, not a signal that ends the program.
+/// Ignores the signals of failed output, so that the function that writes gets an error instead.
 void ignore_signals_of_output();
 
 }  // namespace flexarm::cli

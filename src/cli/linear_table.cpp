@@ -1,6 +1,6 @@
 #include "cli/linear_table.h"
 
-#include "cli/json_text.h"
+#include "math/json_text.h"
 #include "math/pi.h"
 #include "simulation/csv_fields.h"
 
@@ -17,7 +17,7 @@ std::string json_complex(const std::complex<double>& number) {
   return "[" + json_number(number.real()) + ", " + json_number(number.imag()) + "]";
 }
 
-/// "[...]" of `text(entry)` of each entry.
+/// A JSON list of `text(entry)` for each entry.
 template <class List, class Text>
 std::string json_list(const List& entries, const char* separator, const Text& text) {
   std::string list;
@@ -34,7 +34,7 @@ std::string json_event(const RunEvent& event) {
   return "{" + members + "}";
 }
 
-/// A matrix for each frequency.
+/// A list of matrices, one for each frequency.
 std::string json_gains(const std::vector<Eigen::MatrixXcd>& gains) {
   return json_list(gains, ",\n  ", [](const Eigen::MatrixXcd& matrix) {
     std::vector<std::string> rows;
@@ -51,14 +51,14 @@ std::string json_names(const std::vector<std::string>& names) {
   return json_list(names, ", ", json_string);
 }
 
-/// "kind OUTPUT / INPUT" of each pair, inputs fastest.
+/// Appends "kind OUTPUT / INPUT" for each pair and kind; the kind varies fastest, then the input.
 void append_pairs(std::string& header, const LinearModel& model, const std::vector<std::string>& kinds) {
   for (const std::string& output : model.outputs)
     for (const std::string& input : model.inputs)
       for (const std::string& kind : kinds) csv::append(header, kind + output + " / " + input);
 }
 
-/// A row for each name, of all matrices beside each other.
+/// Appends a row for each name that contains this row of all matrices, side by side.
 void append_rows(std::string& table, const std::vector<std::string>& names,
                  const std::vector<const Eigen::MatrixXd*>& matrices) {
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(names.size()); ++i) {

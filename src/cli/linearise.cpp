@@ -16,9 +16,9 @@
 namespace flexarm::cli {
 namespace {
 
-/// Of the state that moves most; smaller parts are left out of what is printed.
+/// Parts of an eigenvector below this fraction of its largest part are not printed.
 constexpr double kVisiblePart = 0.05;
-/// Of the largest Hankel singular value; smaller ones that are left out are not printed.
+/// Hankel singular values of dropped states below this fraction of the largest one are not printed.
 constexpr double kLarge = 1e-6;
 
 struct LineariseArguments {
@@ -30,7 +30,7 @@ struct LineariseArguments {
   bool is_steady = false, prints_shapes = false;
   Equilibrium wanted = Equilibrium::Stable;
   int count = 20;
-  std::optional<int> order;  // of a reduced model
+  std::optional<int> order;  // of the reduced model; empty: no reduction
   std::string output;
 };
 
@@ -38,7 +38,7 @@ std::string kind_of_file(const std::string& path) {
   return std::filesystem::path(path).extension().string();
 }
 
-/// Brings the simulation to what it is linearised about, together with its sensitivities where there are any.
+/// Brings the simulation to the state about which it is linearised. Runs the sensitivities along, if there are any.
 void go_to_reference(const LineariseArguments& arguments, Simulation& simulation, Sensitivities* sensitivities) {
   if (arguments.time) {
     while (simulation.time() < *arguments.time - 0.5 * simulation.step_size())
@@ -70,9 +70,9 @@ void print_poles(const LinearModel& model, const LineariseArguments& arguments) 
 }
 
 void print_reduction(const ReducedModel& reduced, int order) {
-  fmt::print("{} states, of which {} are of poles that do not decay\n", reduced.model.states.size(), reduced.kept);
+  fmt::print("{} states, {} of them for poles that do not decay\n", reduced.model.states.size(), reduced.kept);
   if (static_cast<std::size_t>(order) > reduced.model.states.size())
-    fmt::print("others are not reached by inputs, or not seen by outputs\n");
+    fmt::print("the other states are not excited by inputs, or not visible in outputs\n");
   const Eigen::VectorXd& values = reduced.hankel_singular_values;
   const Eigen::Index balanced = static_cast<Eigen::Index>(reduced.model.states.size()) - reduced.kept;
   fmt::print("Hankel singular values:");
@@ -80,10 +80,10 @@ void print_reduction(const ReducedModel& reduced, int order) {
     if (i == balanced) fmt::print("; left out:");
     fmt::print(" {:.4g}", values[i]);
   }
-  fmt::print("\ngains are off by {:.4g} at most\n", 2 * values.tail(values.size() - balanced).sum());
+  fmt::print("\ngains have an error of at most {:.4g}\n", 2 * values.tail(values.size() - balanced).sum());
 }
 
-/// As wide as was asked for.
+/// The linear model, with everything that the arguments request.
 LinearModel model_of(const Simulation& simulation, const LineariseArguments& arguments) {
   try {
     LinearModel model = linearise(simulation, arguments.request);
@@ -123,13 +123,15 @@ void draw_picture(const std::string& picture, const std::string& scene, const Li
   const std::string data = data_of_picture(picture);
   write_model(data, scene, model, responses);
   if (!draw("plot_bode.py", data, picture))
-    throw std::runtime_error("no picture: it needs python3-matplotlib; its numbers are in '" + data + "'");
+    throw std::runtime_error("no picture was made, since that needs python3-matplotlib; the data are in '" + data +
+                             "'");
 }
 
 void check_files(const LineariseArguments& arguments) {
   const auto& [frequencies, step_until, picture] = arguments.responses;
   if (kind_of_file(arguments.output) == ".csv" && !frequencies.empty() && step_until)
-    throw InputError("flexarm: --output: a .csv file has one table: expected .mat or .json for both responses");
+    throw InputError(
+        "flexarm: --output: a .csv file can have one table only: expected .mat or .json for both responses");
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
   require_writable("--output", arguments.output);
   if (picture.empty()) return;
@@ -173,13 +175,13 @@ void add_linearise(CommandLine& line) {
   const auto arguments = std::make_shared<LineariseArguments>();
   Command& command = line.command("linearise", "Linear model (A, B, C, D) about the equilibrium, with its poles");
   add_scene(command, arguments->scene);
-  command.heading("About what");
+  command.heading("Reference motion");
   add_equilibrium(command, arguments->wanted);
   command
       .option("--time", arguments->time,
-              "about the motion at this time of a simulation, in place of the equilibrium [s]")
+              "about the motion of a simulation at this time, instead of the equilibrium [s]")
       .check(check_non_negative);
-  command.flag("--steady", arguments->is_steady, "about a steady motion, with <motion>s as fast as at t = 0")
+  command.flag("--steady", arguments->is_steady, "about a steady motion with the velocities of <motion>s at t = 0")
       .excludes("--time");
   command.heading("The model");
   command
@@ -191,7 +193,9 @@ void add_linearise(CommandLine& line) {
               "position:, velocity: or acceleration: with JOINT, POINT or POINT:x; effort:JOINT of a <motion>; "
               "strain:SENSOR, section_force:SENSOR; positions of all joints and probes by default")
       .with_commas();
-  command.option("--reduce", arguments->order, "a model of so many states: balanced truncation of what decays")
+  command
+      .option("--reduce", arguments->order,
+              "reduces the model to this number of states, by balanced truncation of the decaying part")
       .check(whole_number_between(0, 100000))
       .excludes("--sensitivities")
       .excludes("--transition");
@@ -200,7 +204,7 @@ void add_linearise(CommandLine& line) {
   command.option("--count", arguments->count, "number of poles to print")
       .shows_default()
       .check(whole_number_between(0, 100000));
-  command.flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
+  command.flag("--shapes", arguments->prints_shapes, "prints the mode of each pole");
   command
       .option("-o,--output", arguments->output,
               "file: .mat (MATLAB), .json or .csv (the matrices, or a response); -: JSON to standard output")

@@ -12,11 +12,11 @@
 
 namespace flexarm::cli {
 
-// ---------------------------------------------------------------- what the model answers to inputs
+// ---------------------------------------------------------------- responses
 
 namespace {
 
-/// Parts of the time that a step response is written at the ends of.
+/// Number of intervals between the times at which a step response is written.
 constexpr int kIntervals = 1000;
 constexpr double kMostFrequencies = 1e6;
 
@@ -24,7 +24,7 @@ std::string wrong(const std::string& got) {
   return "expected numbers > 0, or FROM:TO:COUNT with 0 < FROM < TO and COUNT >= 2, got '" + got + "'";
 }
 
-/// Of "FROM:TO:COUNT"; returns what is wrong with it.
+/// Reads "FROM:TO:COUNT". @returns what is wrong with it, or ""
 std::string read_range(const std::string& text, std::vector<double>& frequencies) {
   const std::string_view view = text;
   const std::size_t first = view.find(':'), second = view.find(':', first + 1);
@@ -56,12 +56,10 @@ void add_responses(Command& command, ResponseOptions& options) {
   command
       .option_of_words(
           "--frequencies", [&options](const Words& words) { return read_frequencies(words, options.frequencies); },
-          "of a frequency response: FROM:TO:COUNT (logarithmic), or a list [Hz]")
+          "frequencies of a frequency response: FROM:TO:COUNT (logarithmic), or a list [Hz]")
       .shown_as("NUMBER")
       .with_commas();
-  command
-      .option("--step-response", options.step_until,
-              "until this time after an input went from 0 to 1, each by itself [s]")
+  command.option("--step-response", options.step_until, "step responses up to this time, one input after the other [s]")
       .check(check_positive);
   command.option("--plot", options.picture, "file for a Bode picture (.png); its data go beside it (.json)")
       .shown_as("FILE")
@@ -79,11 +77,11 @@ std::string data_of_picture(const std::string& picture) {
   return std::filesystem::path(picture).replace_extension(".json").string();
 }
 
-// ---------------------------------------------------------------- how the run to its instant changes
+// ---------------------------------------------------------------- derivatives of the run to the time of linearisation
 
 namespace {
 
-/// Of doubtful events.
+/// Most warnings of doubtful events that are printed.
 constexpr int kMostWarnings = 10;
 
 }  // namespace
@@ -144,7 +142,7 @@ void warn_of_events(const RunDerivatives& run) {
     if (++shown > kMostWarnings)
       ++hidden;
     else
-      fmt::print(stderr, "flexarm: warning: sensitivities behind t = {:.9g} s are doubtful: '{}' {}: {}\n", event.time,
+      fmt::print(stderr, "flexarm: warning: sensitivities after t = {:.9g} s are doubtful: '{}' {}: {}\n", event.time,
                  event.joint, event.what, event.doubt);
   }
   if (hidden > 0) fmt::print(stderr, "flexarm: warning: and {} more such events\n", hidden);

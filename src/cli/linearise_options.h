@@ -1,5 +1,5 @@
 #pragma once
-/// Options of `flexarm linearise` that ask for more than a model, and what they ask for.
+/// Options of `flexarm linearise` for results beyond the model: responses and derivatives.
 
 #include <memory>
 #include <optional>
@@ -12,24 +12,24 @@
 
 namespace flexarm::cli {
 
-// ---------------------------------------------------------------- what the model answers to inputs
+// ---------------------------------------------------------------- responses
 
 struct ResponseOptions {
   std::vector<double> frequencies;   ///< [Hz]
   std::optional<double> step_until;  ///< [s]
-  std::string picture;               ///< file; empty: none
+  std::string picture;               ///< file of a plot; empty: none
 };
 
-/// `options` must outlive the command.
+/// Declares the options. `options` must outlive the command.
 void add_responses(Command& command, ResponseOptions& options);
 
-/// @throws std::runtime_error where there is no such response.
+/// @throws std::runtime_error if a response cannot be computed
 LinearResponses responses_of(const LinearModel& model, const ResponseOptions& options);
 
-/// Where the numbers go that a picture is drawn of: beside it.
+/// The file beside a picture that contains the plotted numbers.
 std::string data_of_picture(const std::string& picture);
 
-// ---------------------------------------------------------------- how the run to its instant changes
+// ---------------------------------------------------------------- derivatives of the run to the time of linearisation
 
 struct DerivativeOptions {
   std::vector<std::string> parameters;
@@ -37,23 +37,23 @@ struct DerivativeOptions {
   bool are_wanted() const { return !parameters.empty() || by_initial_state; }
 };
 
-/// `time`: an option without which there are none; `options` must outlive the command.
+/// Declares the options. `time`: the option that they require. `options` must outlive the command.
 void add_derivatives(Command& command, DerivativeOptions& options, const std::string& time);
 
-/// Of a simulation of that input, at its start.
-/// @throws InputError naming what cannot be differentiated.
+/// Sensitivities of a simulation of `input`, which must be at its start; null if none are requested.
+/// @throws InputError that names what cannot be differentiated
 std::unique_ptr<Sensitivities> sensitivities_of(Simulation& simulation, const SceneInput& input,
                                                 const DerivativeOptions& options);
 
-/// Of the states and outputs of a model about now.
-/// @throws InputError for outputs that have none; std::runtime_error if they are lost.
+/// The present derivatives of the model's states and outputs.
+/// @throws InputError if an output has no derivatives; std::runtime_error if the sensitivities were lost during the run
 RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearModel& model,
                               const DerivativeOptions& options);
 
-/// What stops and dry friction did on the way, as far as it makes derivatives doubtful: warnings.
+/// Warns of events at stops and of dry friction during the run that make the derivatives doubtful.
 void warn_of_events(const RunDerivatives& run);
 
-/// A row for each output and the first `count` states, a column for each parameter.
+/// Prints a row for each output and for each of the first `count` states, with a column for each parameter.
 void print_derivatives(const RunDerivatives& run, const LinearModel& model, int count);
 
 }  // namespace flexarm::cli

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/json_text.h"
+#include "math/json_text.h"
 #include "simulation/csv_fields.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"

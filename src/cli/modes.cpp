@@ -2,12 +2,17 @@
 
 #include "cli/commands.h"
 #include "cli/mode_table.h"
+#include "cli/page_options.h"
 #include "cli/scene_input.h"
+#include "flexarm/scene/scene_description.h"
+#include "pictures/page.h"
+#include "pictures/still_pictures.h"
 
 namespace flexarm::cli {
 namespace {
 
-/// Of the largest component; below it an imaginary part does not show in the digits printed.
+/// Imaginary parts below this fraction of the largest component are not printed, since they would not affect the
+/// digits.
 constexpr double kVisibleImaginary = 1e-4;
 
 struct ModesArguments {
@@ -15,6 +20,7 @@ struct ModesArguments {
   int count = 10;
   Equilibrium wanted = Equilibrium::Stable;
   bool json = false, csv = false;
+  PageOptions page;
 };
 
 void print_motion(const std::string& name, const Vector6& motion) {
@@ -56,7 +62,24 @@ void print_text(const Simulation& simulation, const std::vector<Mode>& modes, bo
   }
 }
 
+/// "mode 2: 3.21 Hz".
+std::string name_of(const Mode& mode, std::size_t number) {
+  const std::string name = fmt::format("mode {}: {:.4g} Hz", number, mode.frequency);
+  const bool is_oscillation = mode.frequency > 0 && !mode.is_flutter();
+  return is_oscillation ? name : fmt::format("mode {}: {}", number, kind_of(mode));
+}
+
+void write_modes_page(const std::string& path, const Simulation& simulation, const std::vector<Mode>& modes,
+                      bool is_equilibrium) {
+  std::vector<pictures::NamedMode> named;
+  for (const Mode& mode : modes) named.push_back({name_of(mode, named.size() + 1), mode});
+  const std::string title = fmt::format("{}: natural modes about {}", simulation.scene().name,
+                                        is_equilibrium ? "the equilibrium" : "the initial configuration");
+  pictures::write_page(path, {pictures::record_modes(simulation, named, title)});
+}
+
 int solve(const ModesArguments& arguments) {
+  const std::string page = page_path(arguments.page, arguments.scene, "_modes");
   Simulation simulation = load_simulation(arguments.scene);
   auto [modes, is_equilibrium] = modes_about_equilibrium(simulation, arguments.count, arguments.wanted);
   modes.resize(std::min<std::size_t>(modes.size(), arguments.count));
@@ -66,6 +89,9 @@ int solve(const ModesArguments& arguments) {
     fmt::print("{}", modes_as_csv(simulation, modes));
   else
     print_text(simulation, modes, is_equilibrium);
+  if (page.empty()) return kDone;
+  write_modes_page(page, simulation, modes, is_equilibrium);
+  present_page(arguments.page, page, arguments.json || arguments.csv ? stderr : stdout);
   return kDone;
 }
 
@@ -79,6 +105,7 @@ void add_modes(CommandLine& line) {
   command.option("--count", arguments->count, "number of modes").shows_default().check(whole_number_between(1, 10000));
   command.flag("--json", arguments->json, "prints JSON with all digits");
   command.flag("--csv", arguments->csv, "prints comma-separated values with all digits").excludes("--json");
+  add_page(command, arguments->page);
   command.runs([arguments] { return solve(*arguments); });
 }
 

@@ -6,7 +6,7 @@
 
 namespace flexarm::cli {
 
-/// Draws on the standard error output; draws nothing where that is no terminal.
+/// Draws on standard error; draws nothing if standard error is not a terminal.
 class ProgressBar {
  public:
   ProgressBar(double begin, double end, bool is_wanted);
@@ -14,9 +14,9 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows `value` between begin and end; at most ten times a second. Without a label it is a time.
+  /// Shows `value` between begin and end, at most ten times a second. Without a label, the value is shown as a time.
   void show(double value, const std::string& label = {});
-  /// Wipes the bar, so that other output can follow.
+  /// Removes the bar, so that other output can follow.
   void clear();
 
  private:

@@ -5,7 +5,8 @@
 namespace flexarm::cli {
 
 const recording::Library& recording_library() {
-  return loaded_functions<recording::Library>(recording::kLibrary, recording::kSymbol, "cannot use such files");
+  return loaded_functions<recording::Library>(recording::kLibrary, recording::kSymbol,
+                                              "cannot read or write such files");
 }
 
 }  // namespace flexarm::cli

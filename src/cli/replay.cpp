@@ -1,14 +1,18 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/page_options.h"
 #include "cli/recording_library.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/checkpoint.h"
+#include "pictures/page.h"
+#include "pictures/recorded_rows.h"
 
 namespace flexarm::cli {
 namespace {
@@ -18,9 +22,46 @@ struct ReplayArguments {
   SimulationOptions simulation;
   recording::ReplayOptions replay;
   std::string resume;
+  PageOptions page;
 };
 
-/// "up to 1 step earlier or later"
+/// Keeps the recorded run and its replay, for a page that shows them side by side.
+class BothRuns {
+ public:
+  explicit BothRuns(const Simulation& simulation)
+      : start_(simulation.copy()), replayed_(simulation, {"replay"}), recorded_{{{"time", "s"}}, {}} {
+    const ResultColumns all(simulation, ResultColumns::Solver::Without);
+    for (const ResultColumn& column : all.columns())
+      if (is_position(column.name)) recorded_.columns.push_back(column);
+  }
+
+  void keep(const Simulation& simulation, const std::vector<double>& positions) {
+    if (!replayed_.is_due(simulation)) return;
+    replayed_.keep(simulation, {});
+    recorded_.values.push_back(simulation.time());
+    recorded_.values.insert(recorded_.values.end(), positions.begin(), positions.end());
+  }
+
+  void write(const std::string& path) const {
+    pictures::write_page(path,
+                         {pictures::record_rows(start_, recorded_, {"recorded run", kAllRows}), replayed_.encode()});
+  }
+
+ private:
+  static constexpr double kAllRows = 1e9;  ///< a rate with which all rows are shown, since only few are kept
+
+  static bool is_position(const std::string& column) {
+    const std::string end = "/position";
+    return column.rfind("joint/", 0) == 0 && column.size() > end.size() &&
+           column.compare(column.size() - end.size(), end.size(), end) == 0;
+  }
+
+  Simulation start_;
+  pictures::Recording replayed_;
+  pictures::ResultRows recorded_;
+};
+
+/// "up to 1 step earlier or later".
 std::string shifts_text(const recording::OtherTimes& times) {
   const auto steps = [](int count) { return fmt::format("{} step{}", count, count == 1 ? "" : "s"); };
   return times.earlier == times.later
@@ -39,11 +80,11 @@ void print_verdict(const recording::ReplayReport& report, double largest) {
                largest);
     return;
   }
-  fmt::print("The bag does not tell in which step a command acted: {} replays in which each acts {} than by its time\n",
+  fmt::print("The bag does not say in which step a command acted: {} replays with commands {} than recorded\n",
              report.other_times.replays, shifts_text(report.other_times));
-  fmt::print("differ from this one by \"explained by times\".\n");
+  fmt::print("differ from this one as \"explained by times\" says.\n");
   if (agrees) {
-    fmt::print("agrees within what the times of commands explain\n");
+    fmt::print("agrees, apart from differences that the times of commands explain\n");
     return;
   }
   const recording::JointDeviation worst = farthest(&recording::JointDeviation::unexplained);
@@ -67,6 +108,7 @@ void print_report(const recording::ReplayReport& report, double largest) {
 }
 
 int replay(const ReplayArguments& arguments) {
+  const std::string page = page_path(arguments.page, arguments.scene, "_replay");
   Simulation simulation = load_simulation(arguments.scene, arguments.simulation);
   try {
     if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
@@ -74,8 +116,18 @@ int replay(const ReplayArguments& arguments) {
     throw InputError(std::string("flexarm: ") + error.what());
   }
   try {
-    const recording::ReplayReport report = recording_library().replay(std::move(simulation), arguments.replay);
+    recording::ReplayOptions options = arguments.replay;
+    std::optional<BothRuns> runs;
+    if (!page.empty()) {
+      runs.emplace(simulation);
+      options.on_state = [&](const Simulation& replayed, const auto& recorded) { runs->keep(replayed, recorded); };
+    }
+    const recording::ReplayReport report = recording_library().replay(std::move(simulation), options);
     print_report(report, arguments.replay.largest);
+    if (runs) {
+      runs->write(page);
+      present_page(arguments.page, page, stdout);
+    }
     return report.agrees(arguments.replay.largest) ? kDone : kFailed;
   } catch (const std::invalid_argument& error) {
     throw InputError(std::string("flexarm: ") + error.what());
@@ -86,39 +138,45 @@ int replay(const ReplayArguments& arguments) {
 
 void add_replay(CommandLine& line) {
   const auto arguments = std::make_shared<ReplayArguments>();
-  Command& command = line.command(
-      "replay", "Gives the commands of a recorded run to the scene again, and compares the joints' motion");
-  command.argument("bag", arguments->replay.bag, "recorded by rosbag").check(check_existing_file);
+  Command& command =
+      line.command("replay", "Repeats the commands of a recorded run, and compares the motion of the joints");
+  command.argument("bag", arguments->replay.bag, "bag recorded with rosbag").check(check_existing_file);
   add_scene(command, arguments->scene);
   command.heading("The run");
-  command.option("--namespace", arguments->replay.ns, "of the arm's topics, /left say");
-  command.flag("--lock-step", arguments->replay.lock_step, "each command has made one step (~lock_step)");
+  command.option("--namespace", arguments->replay.ns, "namespace of the arm's topics, such as /left");
+  command.flag("--lock-step", arguments->replay.lock_step,
+               "each command made one step in the recorded run (~lock_step)");
   command
       .option("--real-time-factor", arguments->replay.real_time_factor,
-              "of the run; where it was the clock itself (/clock is in the bag) it does not matter")
+              "of the recorded run; has no effect if the bag has /clock")
       .shows_default()
       .check(check_positive);
-  command.option("--command-timeout", arguments->replay.command_timeout, "of the run [s]; 0: none")
+  command.option("--command-timeout", arguments->replay.command_timeout, "of the recorded run [s]; 0: none")
       .shows_default()
       .check(check_non_negative);
   command
       .option("--stop-duration", arguments->replay.stop_duration,
-              "of the run: in which joints decelerate that an empty trajectory stops [s]; 0: at once")
+              "of the recorded run: time in which an empty trajectory stops the joints [s]; 0: at once")
       .shows_default()
       .check(check_non_negative);
-  command.option("--step", arguments->simulation.step, "of the run, if it was not the scene's [s]")
+  command.option("--step", arguments->simulation.step, "of the recorded run, if it was not the scene's [s]")
       .check(check_positive);
-  command.option("--scheme", arguments->simulation.scheme, "the same").choices(scheme_choices());
-  command.option("--resume", arguments->resume, "state file of the beginning; else it is the scene's").shown_as("FILE");
+  command.option("--scheme", arguments->simulation.scheme, "of the recorded run, if it was not the scene's")
+      .choices(scheme_choices());
+  command
+      .option("--resume", arguments->resume,
+              "state file with which the recorded run began; by default the scene's start")
+      .shown_as("FILE");
   command.heading("Comparison");
   command.option("--largest", arguments->replay.largest, "difference of positions up to which the runs agree [rad, m]")
       .shows_default()
       .check(check_non_negative);
   command
       .option("--timing", arguments->replay.timing,
-              "steps by which a command may have acted earlier or later than the bag's times say")
+              "number of steps by which commands may have acted earlier or later than recorded")
       .shows_default()
       .check(whole_number_between(0, 1000));
+  add_page(command, arguments->page);
   command.runs([arguments] { return replay(*arguments); });
 }
 

@@ -14,7 +14,7 @@ namespace {
 std::string check_setting(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    return "must be NAME=VALUE, got '" + text + "'" + (equals == 0 ? "" : " (a scene stands before --set)");
+    return "must be NAME=VALUE, got '" + text + "'" + (equals == 0 ? "" : " (write the scene before --set)");
   if (parse_number(text.substr(equals + 1))) return "";
   return "the value of a parameter must be a finite number, got '" + text + "'";
 }
@@ -30,18 +30,18 @@ std::string read_settings(const Words& settings, scene::ParameterValues& values)
 
 }  // namespace
 
-void add_scene(Command& command, SceneInput& input) {
-  command.argument("scene", input.path, "scene file");
+void add_scene(Command& command, SceneInput& input, const std::string& help) {
+  command.argument("scene", input.path, help);
   command.heading("The scene");
   command
       .option_of_words(
           "--set", [&input](const Words& settings) { return read_settings(settings, input.options.parameters); },
-          "values for the scene's parameters in the place of the file's")
+          "values of the scene's parameters, which replace those of the file")
       .shown_as("NAME=VALUE")
       .check(check_setting);
   command
       .option("--xacro-args", input.options.xacro_arguments,
-              "arguments for xacro, by which a scene *.xacro is expanded where it is installed")
+              "arguments for xacro, which expands a scene *.xacro if it is installed")
       .shown_as("\"NAME=VALUE ...\"");
   command
       .option_of_words(
@@ -51,8 +51,8 @@ void add_scene(Command& command, SceneInput& input) {
               (choice == "clamp" ? input.options.clamp_start : input.options.equilibrium_start) = true;
             return "";
           },
-          "clamp: joints that would start outside their limits start at the nearest one; equilibrium: everything "
-          "starts at rest where loads, gravity and servos hold it; or both, with a comma between them")
+          "clamp: joints that would start outside their limits start at the nearest limit; equilibrium: everything "
+          "starts at rest in the equilibrium of loads, gravity and servos; or both, separated by a comma")
       .takes(1)
       .with_commas()
       .choices({"clamp", "equilibrium"});
@@ -63,22 +63,36 @@ void add_scene(Command& command, SceneInput& input) {
             input.options.lock_massless = true;
             return "";
           },
-          "lock: joints that move nothing with inertia are held")
+          "lock: joints that move nothing with inertia are held instead of refused")
       .takes(1)
       .choices({"lock"});
   command.heading("Options");
 }
 
+Words option_words(const SceneInput& input) {
+  const scene::ReadOptions& options = input.options;
+  Words words;
+  for (const auto& [name, value] : options.parameters) words.push_back(fmt::format("--set={}={:.17g}", name, value));
+  if (!options.xacro_arguments.empty()) words.push_back("--xacro-args=" + options.xacro_arguments);
+  if (options.clamp_start || options.equilibrium_start)
+    words.push_back(!options.equilibrium_start ? "--start=clamp"
+                    : options.clamp_start      ? "--start=clamp,equilibrium"
+                                               : "--start=equilibrium");
+  if (options.lock_massless) words.push_back("--massless=lock");
+  return words;
+}
+
 void add_equilibrium(Command& command, Equilibrium& wanted) {
   command.flag(
       "--unstable", [&wanted] { wanted = Equilibrium::UnderTheLoads; },
-      "takes the equilibrium that the loads lead to, stable or not");
+      "takes the equilibrium to which the loads lead, even if it is unstable");
 }
 
 scene::ReadResult read_scene(const SceneInput& input) {
   scene::ReadResult result = scene::read_scene_file(input.path, input.options);
   std::string findings = scene::to_text(result.diagnostics);
-  if (!findings.empty()) findings.pop_back();  // the last line's end, which print and what() supply
+  if (!findings.empty())
+    findings.pop_back();  // the last newline, which fmt::print and the printing of what() add again
   if (!result.scene) throw InputError(findings);
   if (!findings.empty()) fmt::print(stderr, "{}\n", findings);
   return result;
@@ -121,12 +135,9 @@ namespace {
 
 /// "pressed on its upper limit, 3"; empty if a coordinate is between its limits, or has none.
 std::string limit_text(const scene::SceneDescription& scene, const std::string& coordinate, double position) {
-  for (const auto* joints : {&scene.joints, &scene.loop_joints})
-    for (const scene::JointDescription& joint : *joints) {
-      if (joint.name != coordinate || !joint.limits) continue;
-      if (position >= joint.limits->upper) return fmt::format("pressed on its upper limit, {:g}", joint.limits->upper);
-      if (position <= joint.limits->lower) return fmt::format("pressed on its lower limit, {:g}", joint.limits->lower);
-    }
+  const scene::JointLimits* const limits = scene::limits_of(scene, coordinate);
+  if (limits && position >= limits->upper) return fmt::format("pressed on its upper limit, {:g}", limits->upper);
+  if (limits && position <= limits->lower) return fmt::format("pressed on its lower limit, {:g}", limits->lower);
   return "";
 }
 
@@ -146,13 +157,13 @@ void print_where(const Simulation& simulation, bool is_equilibrium) {
     fmt::print("  {:<24} {:>14.7g}{}{}\n", names[i], position, limit.empty() ? "" : "  ", limit);
   }
   if (names.size() > kMostShown)
-    fmt::print("  (the first {} of {}, and what is on its limit)\n", kMostShown, names.size());
+    fmt::print("  (the first {} of {}, and those at their limits)\n", kMostShown, names.size());
 }
 
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted) {
   const char* consequence =
       wanted == Equilibrium::Stable
-          ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
+          ? "falls from it; this is the equilibrium in which it comes to rest (for the unstable one: --unstable)"
           : "would fall from it";
   for (const std::string& doubt : doubts_about_equilibrium(simulation, result, consequence))
     fmt::print(stderr, "flexarm: warning: {}\n", doubt);

@@ -1,5 +1,5 @@
 #pragma once
-/// What all subcommands do with their input.
+/// Reads scenes for all subcommands, and declares options that several of them share.
 
 #include <string>
 #include <vector>
@@ -11,50 +11,54 @@
 
 namespace flexarm::cli {
 
-/// A scene file on the command line, and how it is to be read.
+/// A scene file on the command line, and the options for reading it.
 struct SceneInput {
   std::string path;
   scene::ReadOptions options;
 };
 
-/// The argument `scene` and its options; `input` must outlive the command.
-void add_scene(Command& command, SceneInput& input);
+/// Declares the argument `scene` and its options. `input` must outlive the command.
+void add_scene(Command& command, SceneInput& input, const std::string& help = "scene file");
 
-/// Reads a scene; findings go to the standard error output.
-/// @returns with a scene
+/// The options of a scene as words that any command understands: {"--set=mass=4", "--start=clamp"}.
+Words option_words(const SceneInput& input);
+
+/// Reads a scene; prints findings to standard error.
+/// @returns a result that contains a scene
 /// @throws InputError if the scene has errors
 scene::ReadResult read_scene(const SceneInput& input);
 
-/// Reads a scene and builds its simulation; findings go to the standard error output.
-/// @throws InputError if the scene has errors, ModelError if it cannot be built.
+/// Reads a scene and builds its simulation; prints findings to standard error.
+/// @throws InputError if the scene has errors, ModelError if it cannot be built
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options = {});
 
-/// For options: between 0 and 1, both excluded.
+/// A check for options: a number between 0 and 1, both excluded.
 std::string check_part(const std::string& text);
-/// The same for a tolerance of Newton's method.
+/// A check for options: a tolerance of Newton's method.
 std::string check_tolerance(const std::string& text);
-/// Names of time integration schemes.
+/// Names of all time integration schemes.
 Words scheme_choices();
 
-/// An option by which the equilibrium that the loads lead to is taken, stable or not; `wanted` must outlive the
-/// command.
+/// Declares an option with which the equilibrium that the loads lead to is taken even if it is unstable. `wanted` must
+/// outlive the command.
 void add_equilibrium(Command& command, Equilibrium& wanted);
-/// On the standard error output: that the loads lead to an unstable equilibrium, and which one was taken.
+/// If the loads lead to an unstable equilibrium, says so on standard error, and which equilibrium was taken.
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted);
 
-/// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
-/// move freely has none, which is said on the standard error output; then those about the initial configuration, as
-/// many more as there may be free motions.
-/// @throws std::runtime_error if the eigenvalue problem cannot be solved.
+/// Goes to the equilibrium, and computes the first `count` modes about it. If none can be found, for example since the
+/// mechanism can move freely, says so on standard error and computes the modes about the initial configuration; then
+/// there are as many more modes as there may be free motions.
+/// @throws std::runtime_error if the eigenvalue problem cannot be solved
 struct ModesAbout {
   std::vector<Mode> modes;
-  bool is_equilibrium;  ///< else about the initial configuration
+  bool is_equilibrium;  ///< false: the modes are about the initial configuration
 };
 ModesAbout modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted = Equilibrium::Stable);
-/// Where the joints are then, and which of them are pressed on their limits.
+/// Prints the positions of the joints, and which joints press on their limits.
 void print_where(const Simulation& simulation, bool is_equilibrium);
 
-/// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
+/// Whether a few modes take only seconds. Without springs, each joint coordinate has a free mode, which must be
+/// computed, too.
 bool are_modes_quick(const Simulation& simulation);
 
 }  // namespace flexarm::cli

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "cli/accurate_simulation.h"
 #include "cli/commands.h"
+#include "cli/effort_schedule.h"
 #include "cli/files.h"
 #include "cli/interruptions.h"
 #include "cli/progress_bar.h"
@@ -17,6 +19,7 @@
 #include "flexarm/accuracy/companion.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/run_summary.h"
+#include "pictures/picture.h"
 
 namespace flexarm::cli {
 namespace {
@@ -24,30 +27,35 @@ namespace {
 void check_places(const SimulateArguments& arguments) {
   for (const auto& [option, path] : {std::pair("--checkpoint", &arguments.checkpoint), {"--resume", &arguments.resume}})
     if (is_standard_output(*path))
-      throw InputError(fmt::format("flexarm: {}: states are files, no streams: './-' is one of that name", option));
+      throw InputError(
+          fmt::format("flexarm: {}: a state must be a file, not a stream; for a file called '-', write './-'", option));
   for (const std::string& other : {arguments.scene.path, arguments.resume, arguments.checkpoint})
     refuse_overwriting("--output", arguments.output, other);
   refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);
+  if (is_standard_output(arguments.vtk))
+    throw InputError("flexarm: --vtk: expected a folder, got '-'; for a folder called '-', write './-'");
   if (!arguments.columns.empty() && is_bag(arguments.output))
     throw InputError("flexarm: --columns: a bag has messages, not columns");
+  if (!arguments.columns.empty() && is_page(arguments.output))
+    throw InputError("flexarm: --columns: a page has all columns");
 }
 
-/// Times of more steps than this could not be told apart.
+/// Refuses more steps than a double can count in time.
 void check_duration(const SimulateArguments& arguments, const Simulation& simulation) {
   constexpr double kMostSteps = 1e15;
   const double steps = (arguments.until - simulation.time()) / simulation.step_size();
   if (steps > kMostSteps)
-    throw InputError(fmt::format("flexarm: {:.3g} steps of {} s to --until {} s are more than {:.0e}", steps,
-                                 simulation.step_size(), arguments.until, kMostSteps));
+    throw InputError(fmt::format("flexarm: {:.3g} steps of {} s until --until {} s are more than the limit of {:.0e}",
+                                 steps, simulation.step_size(), arguments.until, kMostSteps));
 }
 
-/// When checkpoints on the way are due, in simulated time.
+/// When intermediate checkpoints are due, in simulated time.
 class CheckpointTimes {
  public:
   CheckpointTimes(double begin, double every)
       : every_(every), next_(every > 0 ? begin + every : std::numeric_limits<double>::infinity()) {}
 
-  /// At `time`, of a run in steps of `step` [s].
+  /// Whether a checkpoint is due at `time`; `step`: length of a step [s].
   bool is_due(double time, double step) {
     if (time < next_ - 0.5 * step) return false;
     next_ = std::max(next_ + every_, time);
@@ -58,13 +66,13 @@ class CheckpointTimes {
   double every_, next_;
 };
 
-/// A step that begins there, or later, would only make up for the round-off of all those before it.
+/// The last time at which a step may begin [s]. A later step would only make up for the round-off of all steps before.
 double last_beginning(double until, double step) {
   const double round_off = until / step * std::numeric_limits<double>::epsilon() * until;
   return until - std::clamp(round_off, 1e-6 * step, 0.5 * step);
 }
 
-/// Empty if no error is to be estimated.
+/// Empty if no error should be estimated.
 std::optional<Companion> companion_of(const SimulateArguments& arguments, const Simulation& simulation) {
   if (!arguments.estimates_error) return std::nullopt;
   try {
@@ -74,7 +82,7 @@ std::optional<Companion> companion_of(const SimulateArguments& arguments, const 
   }
 }
 
-/// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
+/// Steps until the end, a failure or an interruption. The output ends with the last good state.
 /// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
 Run run(const SimulateArguments& arguments, Simulation& simulation) {
   CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
@@ -87,7 +95,9 @@ Run run(const SimulateArguments& arguments, Simulation& simulation) {
   double written = simulation.time();
   std::optional<Companion> companion = companion_of(arguments, simulation);
   const double end = last_beginning(arguments.until, simulation.step_size());
+  const std::function<void(Simulation&)> command = effort_commands(arguments.commands)(simulation);
   while (run.last.converged && simulation.time() < end && interruption() == 0) {
+    command(simulation);
     run.last = simulation.step();
     if (companion && run.last.converged) run.last.error_estimate = companion->follow(simulation);
     run.summary.count(simulation, run.last);
@@ -107,20 +117,20 @@ Run run(const SimulateArguments& arguments, Simulation& simulation) {
   return run;
 }
 
-/// The run; if it cannot be written, the state at which that was noticed is kept.
+/// Runs the simulation. If results cannot be written, saves the state at that time, and throws.
 Run run_and_keep(const SimulateArguments& arguments, Simulation& simulation) {
   try {
     const std::optional<double> accuracy = wanted_accuracy(arguments, simulation);
     return accuracy ? run_accurately(arguments, *accuracy, simulation) : run(arguments, simulation);
   } catch (const InputError&) {
-    throw;  // nothing has happened yet
+    throw;  // nothing was simulated yet
   } catch (const std::runtime_error&) {
     if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);
     throw;
   }
 }
 
-/// Says what went wrong and where the last good state is.
+/// Prints what went wrong and where the last good state is.
 void report_failure(const SimulateArguments& arguments, const Simulation& simulation, const Run& run) {
   const std::string kept = !arguments.checkpoint.empty()
                                ? arguments.checkpoint
@@ -136,6 +146,13 @@ void print_warnings(const Simulation& simulation, const Run& run) {
     fmt::print(stderr, "flexarm: warning: {}\n", warning);
 }
 
+/// The picture for ParaView. Prints which meshes it lacks.
+std::shared_ptr<const pictures::Picture> picture_for_vtk(const Simulation& simulation) {
+  auto picture = std::make_shared<const pictures::Picture>(pictures::picture_of(simulation, {}));
+  for (const std::string& note : picture->notes) fmt::print(stderr, "flexarm: warning: --vtk: {}\n", note);
+  return picture;
+}
+
 void print_summary(const SimulateArguments& arguments, const Simulation& simulation, double begin, const Run& run) {
   const StepCounts& counts = run.summary.counts();
   const std::string recoveries = recoveries_text(counts);
@@ -146,9 +163,11 @@ void print_summary(const SimulateArguments& arguments, const Simulation& simulat
              counts.steps > 0 ? static_cast<double>(counts.iterations) / static_cast<double>(counts.steps) : 0.0,
              recoveries.empty() ? "no halvings" : recoveries, run.seconds,
              run.seconds > 0 ? (simulation.time() - begin) / run.seconds : 0.0);
+  if (!has_output(arguments) && arguments.checkpoint.empty())
+    fmt::print("no results are kept: --output FILE writes them\n");
 }
 
-/// Whatever of the files can be found wrong before the run is an error of input.
+/// Opens or tries all files before the run, so that their errors count as errors of input.
 void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   try {
     if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
@@ -158,15 +177,19 @@ void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   }
 }
 
-int simulate(const SimulateArguments& arguments) {
+}  // namespace
+
+int simulate(SimulateArguments arguments) {
   check_places(arguments);
   SimulationOptions options = arguments.options;
-  // A run that is stopped and resumed gives the same numbers as one that is not.
+  // With checkpoints factorisations are not reused, so that a resumed run gives the same numbers as an uninterrupted
+  // one.
   options.reuse_factorisation = arguments.resume.empty() && arguments.checkpoint.empty();
   Simulation simulation = load_simulation(arguments.scene, options);
   prepare_files(arguments, simulation);
   check_duration(arguments, simulation);
   const double begin = simulation.time();
+  if (!arguments.vtk.empty()) arguments.picture = picture_for_vtk(simulation);
   catch_interruptions();
   const Run result = run_and_keep(arguments, simulation);
   print_warnings(simulation, result);
@@ -183,14 +206,22 @@ int simulate(const SimulateArguments& arguments) {
 
 // ---------------------------------------------------------------- options
 
+void add_commands(Command& command, SimulateArguments& arguments) {
+  command.heading("The scene");
+  command.option("--commands", arguments.commands, "file of efforts, like config/demo_commands.yaml")
+      .shown_as("FILE")
+      .check(check_existing_file);
+}
+
 void add_time_and_accuracy(Command& command, SimulateArguments& arguments) {
   command.heading("Time and accuracy");
   command.option("--until", arguments.until, "end time [s]").shows_default().check(check_non_negative);
   command.option("--step", arguments.options.step, "time step [s]").check(check_positive);
   command
-      .option("--accuracy", arguments.accuracy,
-              "error of probes, of the way that they move, or a millionth of the mechanism's size if that is more: "
-              "steps are chosen for it (the scene's)")
+      .option(
+          "--accuracy", arguments.accuracy,
+          "chooses the steps for this error of the probes, relative to their largest displacement, or to a millionth "
+          "of the mechanism's size if that is more (the scene's)")
       .check(check_part);
   command.option("--scheme", arguments.options.scheme, "integration scheme").choices(scheme_choices());
   command.option("--tolerance", arguments.options.tolerance, "of Newton's method").check(check_tolerance);
@@ -201,26 +232,40 @@ void add_time_and_accuracy(Command& command, SimulateArguments& arguments) {
             arguments.options.on_failure = on_failure_called(words.back());
             return "";
           },
-          "what becomes of a step that the scheme cannot do (the scene's)")
+          "what happens if the scheme fails in a step (the scene's)")
       .takes(1)
       .choices({"stop", "dissipate"});
-  command.flag("--error-estimate", arguments.estimates_error,
-               "estimates the error in time by steps of twice the length, for half as much time again");
+  command.flag(
+      "--error-estimate", arguments.estimates_error,
+      "estimates the error of the steps by a second run with steps of twice the length; takes half as much time again");
 }
+
+namespace {
 
 void add_output(Command& command, SimulateArguments& arguments) {
   command.heading("Output");
   command
       .option("--output", arguments.output,
-              "file for the results: .h5: HDF5, .bag: ROS bag, else CSV; -: standard output")
+              "file for the results: .h5: HDF5, .bag: ROS bag, .html: page that plays the run, else CSV; -: standard "
+              "output")
       .shown_as("FILE");
   command
       .option("--columns", arguments.columns,
-              "of the output, in this order: patterns of names, with commas between them (\"joint/*,sensor/*/f?\")")
+              "columns of the output, in this order: patterns of names, separated by commas (\"joint/*,sensor/*/f?\")")
       .shown_as("PATTERN")
       .with_commas()
       .needs("--output");
-  command.option("--every", arguments.every, "steps between rows of the output")
+  command
+      .option(
+          "--vtk", arguments.vtk,
+          "folder for ParaView: beams, bodies and wrenches as VTK files, listed in run.pvd; an earlier run there is "
+          "replaced")
+      .shown_as("FOLDER");
+  command.option("--vtk-rate", arguments.vtk_rate, "instants for ParaView per second of simulated time, at most")
+      .shows_default()
+      .check(check_positive)
+      .needs("--vtk");
+  command.option("--every", arguments.every, "steps between rows of the output, from which --vtk takes its instants")
       .shows_default()
       .check(whole_number_between(1, 1000000000));
   command.option("--interval", arguments.interval, "time between rows of the output with an accuracy [s]")
@@ -229,7 +274,8 @@ void add_output(Command& command, SimulateArguments& arguments) {
   command.heading("States");
   command.option("--resume", arguments.resume, "state file to start from").shown_as("FILE");
   command.option("--checkpoint", arguments.checkpoint, "state file to write at the end").shown_as("FILE");
-  command.option("--checkpoint-every", arguments.checkpoint_every, "simulated time between writings of it [s]")
+  command
+      .option("--checkpoint-every", arguments.checkpoint_every, "simulated time between intermediate checkpoints [s]")
       .check(check_positive)
       .needs("--checkpoint");
 }
@@ -240,6 +286,7 @@ void add_simulate(CommandLine& line) {
   const auto arguments = std::make_shared<SimulateArguments>();
   Command& command = line.command("simulate", "Simulates a scene in time");
   add_scene(command, arguments->scene);
+  add_commands(command, *arguments);
   add_time_and_accuracy(command, *arguments);
   add_output(command, *arguments);
   command.runs([arguments] { return simulate(*arguments); });

@@ -1,5 +1,5 @@
 #pragma once
-/// What `flexarm simulate` is asked for, and what it puts out.
+/// The arguments of `flexarm simulate`, and its output.
 
 #include <cstdio>
 #include <memory>
@@ -11,41 +11,56 @@
 #include "flexarm/simulation/result_writer.h"
 #include "flexarm/simulation/run_summary.h"
 #include "flexarm/simulation/simulation.h"
+#include "pictures/vtk_writer.h"
 
 namespace flexarm::cli {
 
-/// What `flexarm simulate` is asked for.
+/// The arguments of `flexarm simulate`.
 struct SimulateArguments {
   SceneInput scene;
   std::string output, resume, checkpoint;
+  std::string commands;  ///< file of efforts; empty: none
+  std::string vtk;       ///< folder for ParaView
+  /// Of the scene, for `vtk`: its meshes are read once, also if several runs are tried. Null without `vtk`.
+  std::shared_ptr<const pictures::Picture> picture;
   double until = 10;                 ///< [s]
   double checkpoint_every = 0;       ///< [s]; 0: at the end only
-  std::vector<std::string> columns;  ///< patterns; empty: all
+  std::vector<std::string> columns;  ///< patterns of names; empty: all columns
   int every = 1;                     ///< steps between rows
-  std::optional<double> accuracy;    ///< AccuracyRequest::accuracy; none: that of the scene, unless a step is given
-  double interval = 0;               ///< between rows where there is an accuracy [s]; 0: a hundredth of the time
-  bool estimates_error = false;      ///< so that rows have it; always where there is an accuracy
+  std::optional<double> accuracy;    ///< AccuracyRequest::accuracy; empty: the scene's, unless a step is given
+  double interval = 0;           ///< between rows of a run with an accuracy [s]; 0: a hundredth of the simulated time
+  bool estimates_error = false;  ///< whether rows have an error estimate; with an accuracy they always have one
   bool quiet = false;
   SimulationOptions options;
+  double page_rate = 60;                 ///< instants in a page per second of simulated time
+  double vtk_rate = pictures::kVtkRate;  ///< the same for ParaView
 };
 
-/// How a run went.
+/// Runs `flexarm simulate`. @returns the exit status
+int simulate(SimulateArguments arguments);
+/// Declares the options that say how a scene is simulated. `arguments` must outlive the command.
+void add_time_and_accuracy(Command& command, SimulateArguments& arguments);
+void add_commands(Command& command, SimulateArguments& arguments);
+
+/// The outcome of a run.
 struct Run {
   StepResult last;  ///< of the last step; converged unless the run failed
   RunSummary summary;
-  double seconds = 0;       ///< of the wall clock
-  bool is_accurate = true;  ///< false where an accuracy was asked for and not met
-  std::string scheme = {};  ///< that ran, where it is not the simulation's own
+  double seconds = 0;       ///< wall time
+  bool is_accurate = true;  ///< false if an accuracy was requested and not met
+  std::string scheme = {};  ///< scheme of the run, if it is not the simulation's own
 };
 
-/// Where what happened is told: not among the results.
+/// The stream for reports: standard error if results go to standard output, else standard output.
 std::FILE* report_stream(const SimulateArguments& arguments);
 
+bool has_output(const SimulateArguments& arguments);
 bool is_bag(const std::string& path);
+bool is_page(const std::string& path);
 
-/// Writes rows by a thread of its own; at each of them the summary, which must outlive it, looks, too. Null: nothing is
-/// put out.
-/// @throws InputError naming what of the output or the columns is wrong.
+/// Opens a writer of all outputs that writes rows in a thread of its own. For each row it also updates the summary,
+/// which must outlive the writer. @returns null if there is no output
+/// @throws InputError that names the error in the output or the columns
 std::unique_ptr<ResultWriter> open_output(const SimulateArguments& arguments, const Simulation& simulation,
                                           RunSummary& summary);
 

@@ -4,8 +4,11 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/page_options.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/csv_writer.h"
+#include "pictures/page.h"
+#include "pictures/still_pictures.h"
 
 namespace flexarm::cli {
 namespace {
@@ -15,6 +18,7 @@ struct StaticArguments {
   std::string output;
   int load_steps = kLoadSteps;
   Equilibrium wanted = Equilibrium::Stable;
+  PageOptions page;
 };
 
 void print_point(const std::string& name, const Vector3& position) {
@@ -40,14 +44,21 @@ void print_equilibrium(const Simulation& simulation) {
 int solve(const StaticArguments& arguments) {
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
   require_writable("--output", arguments.output);
+  const std::string page = page_path(arguments.page, arguments.scene, "_equilibrium");
   Simulation simulation = load_simulation(arguments.scene);
+  const Simulation start = simulation.copy();
   const StaticResult result = simulation.solve_static(arguments.load_steps, arguments.wanted);
   if (!result.converged) {
     fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result));
     return kFailed;
   }
   warn_of_instability(simulation, result, arguments.wanted);
-  if (!is_standard_output(arguments.output)) print_equilibrium(simulation);
+  std::FILE* const report = is_standard_output(arguments.output) ? stderr : stdout;
+  if (report == stdout) print_equilibrium(simulation);
+  if (!page.empty()) {
+    pictures::write_page(page, {pictures::record_equilibrium(start, simulation)});
+    present_page(arguments.page, page, report);
+  }
   if (arguments.output.empty()) return kDone;
   CsvWriter output(arguments.output, ResultColumns(simulation, ResultColumns::Solver::Without));
   output.write_row(simulation);
@@ -66,6 +77,7 @@ void add_static(CommandLine& line) {
       .check(whole_number_between(1, 1000000));
   add_equilibrium(command, arguments->wanted);
   command.option("--output", arguments->output, "CSV file for the equilibrium; -: standard output").shown_as("FILE");
+  add_page(command, arguments->page);
   command.runs([arguments] { return solve(*arguments); });
 }
 

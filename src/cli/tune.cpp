@@ -6,16 +6,20 @@
 
 #include <fmt/format.h>
 
+#include "accuracy/run_settings.h"
 #include "accuracy/tuning.h"
 #include "cli/commands.h"
 #include "cli/effort_schedule.h"
 #include "cli/files.h"
 #include "cli/installation.h"
 #include "cli/interruptions.h"
+#include "cli/page_options.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
 #include "cli/tuned_scene.h"
 #include "cli/tuning_table.h"
+#include "flexarm/scene/scene_description.h"
+#include "pictures/page.h"
 
 namespace flexarm::cli {
 namespace {
@@ -30,12 +34,13 @@ struct TuneArguments {
   double until = 10;  // s
   TuningFreedom freedom;
   TrialLimits limits;
+  PageOptions page;
 };
 
-/// Times at which motions are compared, at most.
+/// Largest number of times at which motions are compared.
 constexpr int kMostJudgedTimes = 150;
 
-/// STEM_tuned.urdf, in the folder of now.
+/// The output file; by default STEM_tuned.urdf in the working folder.
 std::string output_of(const TuneArguments& arguments) {
   const fs::path scene = arguments.scene.path;
   return !arguments.output.empty() ? arguments.output : scene.stem().string() + "_tuned" + scene.extension().string();
@@ -47,7 +52,7 @@ std::string content_of(const std::string& path) {
   return text.str();
 }
 
-/// The scene, when a simulation of it can be built.
+/// The scene; throws if no simulation of it can be built.
 scene::SceneDescription read(const SceneInput& input) {
   return load_simulation(input).scene();
 }
@@ -57,7 +62,7 @@ void check(const TuneArguments& arguments) {
     throw InputError("flexarm: tune: either --accuracy or --real-time is expected");
   const std::string output = output_of(arguments);
   if (is_standard_output(output))
-    throw InputError("flexarm: --output: the tuned scene is a file: './-' is one of that name");
+    throw InputError("flexarm: --output: the tuned scene must be a file; for a file called '-', write './-'");
   refuse_overwriting("--output", output, arguments.scene.path);
   require_writable("--output", output);
 }
@@ -70,7 +75,7 @@ TuningResult search(const TuneArguments& arguments, TrialRuns& trials) {
   return tune(trials, goal, arguments.freedom, [&](double part, const std::string& what) { bar.show(part, what); });
 }
 
-/// What was asked for and what was found, in sentences.
+/// Prints the requirements and the results, in sentences.
 void print_result(const TuneArguments& arguments, const TuningResult& result, const JudgedTimes& times) {
   fmt::print("{}", tuning_table(result, times));
   if (!result.shortcoming.empty()) fmt::print("{}\n", result.shortcoming);
@@ -78,17 +83,39 @@ void print_result(const TuneArguments& arguments, const TuningResult& result, co
   if (!result.best) return;
   const TunedRun& best = result.runs[*result.best];
   fmt::print("error: {:.3g} as estimated, {:.3g} against the reference", result.estimate, best.error);
-  if (result.reference) fmt::print(", which is {:.2g} off itself", result.reference_error);
+  if (result.reference) fmt::print(", whose own error is {:.2g}", result.reference_error);
   fmt::print("; 1 is {:.4g} m\n", result.scale);
   fmt::print("{:.3g} times real time\n", times.until() / best.seconds);
   if (!result.is_met)
-    fmt::print("{} cannot be met; this is the most accurate that was found\n",
+    fmt::print("{} cannot be met; this is the most accurate run that was found\n",
                arguments.accuracy ? fmt::format("an error of {:g}", *arguments.accuracy)
                                   : fmt::format("{:g} times real time", *arguments.real_time));
 }
 
+/// A run of the scene; if it fails or is interrupted, until then.
+pictures::EncodedRun recorded(const TuneArguments& arguments, const scene::SceneDescription& scene,
+                              const std::string& title) {
+  Simulation simulation(scene);
+  const std::function<void(Simulation&)> command = effort_commands(arguments.commands)(simulation);
+  pictures::Recording recording(simulation, {title});
+  recording.run(simulation, arguments.until, [&](Simulation& commanded) {
+    command(commanded);
+    return interruption() == 0;
+  });
+  return recording.encode();
+}
+
+/// Writes a page that plays the scene as it was beside the tuned one.
+void write_tuning_page(const TuneArguments& arguments, const std::string& path, const scene::SceneDescription& scene,
+                       const RunSettings& settings) {
+  pictures::write_page(path, {recorded(arguments, scene, scene.name),
+                              recorded(arguments, with_settings(scene, settings), scene.name + ", tuned")});
+  present_page(arguments.page, path, stdout);
+}
+
 int tune_scene(const TuneArguments& arguments) {
   check(arguments);
+  const std::string page = page_path(arguments.page, arguments.scene, "_tuned");
   const scene::SceneDescription scene = read(arguments.scene);
   catch_interruptions();
   const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kMostJudgedTimes);
@@ -111,8 +138,10 @@ int tune_scene(const TuneArguments& arguments) {
     fmt::print("{}\n", picture);
   else
     fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
+  if (!page.empty() && result.best) write_tuning_page(arguments, page, scene, result.runs[*result.best].settings);
   if (interruption() != 0)
-    throw Interrupted(result.is_met ? "interrupted; the best so far is kept" : "interrupted; no scene is written");
+    throw Interrupted(result.is_met ? "interrupted; the best settings so far are written"
+                                    : "interrupted; no scene is written");
   return result.is_met ? kDone : kFailed;
 }
 
@@ -124,24 +153,26 @@ void add_tune(CommandLine& line) {
       "tune",
       "Finds the cheapest meshes, scheme, step and tolerance for an accuracy, or the most accurate for a speed");
   add_scene(command, arguments->scene);
-  command.heading("Goal: one of the first two");
+  command.heading("Goal: --accuracy or --real-time");
   command.option("--accuracy", arguments->accuracy, "error of the probes, relative to their largest displacement")
       .check(check_positive);
-  command.option("--real-time", arguments->real_time, "as accurate as this many times real time leave room for")
+  command
+      .option("--real-time", arguments->real_time,
+              "finds the most accurate settings for this speed, as a multiple of real time")
       .check(check_positive);
-  command.option("--margin", arguments->margin, "of --real-time: how many times faster it shall be")
+  command.option("--margin", arguments->margin, "safety factor for --real-time: runs must be this many times faster")
       .shows_default()
       .check(check_positive);
   command.heading("Search");
-  command.option("--until", arguments->until, "end of the motion that is looked at [s]")
+  command.option("--until", arguments->until, "end of the motion with which settings are compared [s]")
       .shows_default()
       .check(check_positive);
-  command.option("--commands", arguments->commands, "file of efforts, as config/demo_commands.yaml is one")
+  command.option("--commands", arguments->commands, "file of efforts, like config/demo_commands.yaml")
       .shown_as("FILE")
       .check(check_existing_file);
   command.flag("--any-scheme", arguments->freedom.any_scheme,
-               "also such that do not conserve what the scene's scheme does");
-  command.option("--budget", arguments->limits.seconds, "time of the processor that the search may take [s]")
+               "also tries schemes that do not conserve what the scene's scheme conserves");
+  command.option("--budget", arguments->limits.seconds, "limit of the search's processor time [s]")
       .shows_default()
       .check(check_positive);
   command.heading("Output");
@@ -149,6 +180,7 @@ void add_tune(CommandLine& line) {
       .option("--output", arguments->output,
               "file for the tuned scene (SCENE_tuned.urdf); a table and a picture go beside it")
       .shown_as("FILE");
+  add_page(command, arguments->page);
   command.runs([arguments] { return tune_scene(*arguments); });
 }
 

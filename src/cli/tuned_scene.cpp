@@ -15,22 +15,22 @@ namespace flexarm::cli {
 
 // ---------------------------------------------------------------- attributes in the text of a file
 
-// Every other byte of it stays.
+// All other bytes of the text stay as they are.
 
 namespace {
 
-/// A start tag in a text.
+/// The place of a start tag in a text.
 struct TagPlace {
   std::string name;                ///< "beam"
-  std::vector<std::string> above;  ///< names of the elements around it, the root first
-  std::string link;                ///< `name` of the link around it; empty: none
+  std::vector<std::string> above;  ///< names of the enclosing elements, from the root
+  std::string link;                ///< `name` of the enclosing link; empty: none
   std::size_t begin = 0, end = 0;  ///< of "<beam ...>" in the text
-  bool is_empty = false;           ///< "<beam .../>"
+  bool is_empty = false;           ///< whether it is "<beam .../>"
 };
 
 constexpr std::size_t kNone = std::string::npos;
 
-/// Of an attribute in a tag: its name's begin, and the value between its quotes.
+/// The place of an attribute in a text: the begin of its name, and the value between the quotes.
 struct AttributePlace {
   std::string name;
   std::size_t begin, value_begin, value_end;
@@ -40,7 +40,7 @@ bool is_space(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The end of a comment, CDATA or declaration that begins at `i`; `i` where none does.
+/// The end of a comment, CDATA section or declaration that begins at `i`; `i` if none begins there.
 std::size_t after_opaque(const std::string& text, std::size_t i) {
   for (const auto& [begin, end] :
        {std::pair<std::string_view, std::string_view>("<!--", "-->"), {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}})
@@ -51,7 +51,7 @@ std::size_t after_opaque(const std::string& text, std::size_t i) {
   return i;
 }
 
-/// Behind the '>' of the tag that begins at `i`.
+/// The position after the '>' of the tag that begins at `i`.
 std::size_t after_tag(const std::string& text, std::size_t i) {
   char quote = 0;
   for (; i < text.size(); ++i) {
@@ -101,7 +101,7 @@ std::string value_of(const std::string& text, std::size_t tag, const std::string
   return "";
 }
 
-/// All start tags of a well-formed text, in its order; comments and the like have none.
+/// All start tags of a well-formed text, in order, without those in comments and CDATA sections.
 std::vector<TagPlace> find_tags(const std::string& text) {
   std::vector<TagPlace> tags;
   std::vector<std::string> open, links;
@@ -131,7 +131,7 @@ std::vector<TagPlace> find_tags(const std::string& text) {
   return tags;
 }
 
-/// Sets an attribute of the tag that begins at `begin`: a value where it is, or else as the tag's last attribute.
+/// Sets an attribute of the tag that begins at `begin`. A new attribute becomes the tag's last one.
 void set_attribute(std::string& text, std::size_t begin, const std::string& name, const std::string& value) {
   const std::vector<AttributePlace> all = attributes(text, begin);
   for (const AttributePlace& attribute : all)
@@ -143,7 +143,7 @@ void set_attribute(std::string& text, std::size_t begin, const std::string& name
   text.insert(place, " " + name + "=\"" + value + "\"");
 }
 
-/// Takes an attribute away where there is one.
+/// Removes an attribute, if the tag has it.
 void remove_attribute(std::string& text, std::size_t begin, const std::string& name) {
   for (const AttributePlace& attribute : attributes(text, begin))
     if (attribute.name == name) {
@@ -160,7 +160,7 @@ void remove_attribute(std::string& text, std::size_t begin, const std::string& n
 
 namespace {
 
-/// Null: there is none.
+/// Null if the link has no beam.
 const TagPlace* find_beam(const std::vector<TagPlace>& tags, const std::string& link) {
   const auto found = std::find_if(tags.begin(), tags.end(), [&](const TagPlace& tag) {
     return tag.name == "beam" && tag.link == link && tag.above.size() == 2;
@@ -175,7 +175,7 @@ const TagPlace* find_tag(const std::vector<TagPlace>& tags, const std::string& n
   return found == tags.end() ? nullptr : &*found;
 }
 
-/// Where <integrator> begins; it is there from now on.
+/// The position of <integrator>, which is added if it is missing.
 std::size_t integrator_of(std::string& text) {
   const std::string root = find_tags(text).at(0).name;
   if (const std::vector<TagPlace> tags = find_tags(text);
@@ -202,7 +202,7 @@ void set_beams(std::string& text, const scene::SceneDescription& scene, const Ru
     ++beam;
     const std::vector<TagPlace> tags = find_tags(text);
     const TagPlace* tag = find_beam(tags, link.name);
-    if (!tag) continue;  // found out below
+    if (!tag) continue;  // reported below
     if (then.order != now.order && then.elements != 0)
       set_attribute(text, tag->begin, "order", std::to_string(then.order));
     if (then.elements != now.elements)
@@ -212,7 +212,8 @@ void set_beams(std::string& text, const scene::SceneDescription& scene, const Ru
 
 void set_integrator(std::string& text, const scene::SceneDescription& scene, const RunSettings& settings) {
   const RunSettings own = settings_of(scene);
-  const bool is_accurate = scene.integrator.accuracy.has_value();  // its steps would not be those that were tuned
+  const bool is_accurate =
+      scene.integrator.accuracy.has_value();  // with an accuracy, steps would not be the tuned ones
   if (!is_accurate && settings.scheme == own.scheme && settings.step == own.step && settings.tolerance == own.tolerance)
     return;
   const std::size_t begin = integrator_of(text);
@@ -241,7 +242,7 @@ std::string tuned_text(const std::string& text, const scene::SceneDescription& s
     for (BeamResolution& beam : some->beams)
       if (beam.elements == 0) beam.order = 1;
   if (!read.scene || got < wanted || wanted < got)
-    throw std::runtime_error(fmt::format("'{}' cannot be changed by its attributes alone", scene.file));
+    throw std::runtime_error(fmt::format("'{}' cannot be tuned by changing attributes alone", scene.file));
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The text of a scene file with other settings.
+/// Changes settings in the text of a scene file.
 
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace flexarm::cli {
 
-/// `text` is what `scene` was read from. Attributes elements and order of beams, and scheme, step and tolerance of
-/// <integrator> are changed where they differ; what is missing for that (<simulation>, <integrator>) is added on a line
-/// of its own. Its accuracy, and options that another scheme does not take, are taken away.
-/// @throws std::runtime_error if the text cannot be brought to say so: it comes out of xacro, for example.
+/// Changes settings in `text`, from which `scene` was read. Changes those attributes `elements` and `order` of beams,
+/// and `scheme`, `step` and `tolerance` of <integrator>, that differ. Missing elements (<simulation>, <integrator>) are
+/// added on a line of their own. Removes the integrator's `accuracy`, and options that the new scheme does not have.
+/// @throws std::runtime_error if the text cannot be changed accordingly, for example since xacro generates parts of it
 std::string tuned_text(const std::string& text, const scene::SceneDescription& scene, const RunSettings& settings);
 
 }  // namespace flexarm::cli

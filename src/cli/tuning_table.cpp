@@ -18,7 +18,7 @@ std::string role_of(const TuningResult& result, std::size_t i) {
   return i == 0 ? "scene" : "run";
 }
 
-/// Whether it belongs into the table.
+/// Whether run `i` is in the table.
 bool is_shown(const TuningResult& result, std::size_t i) {
   const TunedRun& run = result.runs[i];
   if (!run.failure.empty()) return i == 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a search for settings has found, for people and for other programs.
+/// Prints the results of a search for settings, as a table or as CSV.
 
 #include <string>
 
@@ -7,10 +7,11 @@
 
 namespace flexarm::cli {
 
-/// A line for each run than which none is both faster and more accurate, for the scene as it stands, for the reference.
+/// A line for each run on the Pareto front (no other run is both faster and at least as accurate), for the scene's own
+/// settings, and for the reference.
 std::string tuning_table(const TuningResult& result, const JudgedTimes& times);
-/// All runs: role (best, scene, reference, run), mesh, scheme, step, tolerance, unknowns, steps, iterations, seconds,
-/// times_real_time, error, failure.
+/// All runs, with the columns role (best, scene, reference, run), mesh, scheme, step, tolerance, unknowns, steps,
+/// iterations, seconds, times_real_time, error, failure.
 std::string tuning_csv(const TuningResult& result, const JudgedTimes& times);
 
 }  // namespace flexarm::cli

@@ -13,7 +13,7 @@ namespace {
 
 using ShapePowers = Eigen::Matrix<double, 5, 5>;
 
-/// Row i: coefficients of the shape function of node i by powers of xi.
+/// Returns the coefficients of the shape functions: row i has those of node i, by powers of xi.
 ShapePowers powers_of(int order) {
   ShapePowers out = ShapePowers::Zero();
   const int nodes = order + 1;
@@ -37,7 +37,7 @@ const ShapePowers& shape_powers(int order) {
   return all[order];
 }
 
-/// Half the square of a distance, a polynomial of xi.
+/// Half of the squared distance between a point and a line piece, as a polynomial of xi.
 class HalfSquare {
  public:
   HalfSquare(const LinePiece& piece, const Vector3& point) : degree_(2 * piece.order), powers_(piece.squares) {
@@ -52,7 +52,7 @@ class HalfSquare {
     for (int k = degree_ - 1; k >= 0; --k) out = xi * out + powers_[k];
     return out;
   }
-  /// By xi.
+  /// Returns the first and second derivatives with respect to xi.
   std::pair<double, double> derivatives(double xi) const {
     double value = powers_[degree_], slope = 0, half_curvature = 0;
     for (int k = degree_ - 1; k >= 0; --k) {
@@ -68,7 +68,7 @@ class HalfSquare {
   std::array<double, 9> powers_;
 };
 
-/// A place of a piece.
+/// Returns the position of a piece at xi.
 Vector3 place_at(const LinePiece& piece, double xi) {
   Vector3 out = piece.coefficients.col(piece.order);
   for (int k = piece.order - 1; k >= 0; --k) out = xi * out + piece.coefficients.col(k);
@@ -113,8 +113,8 @@ double LinePiece::least_distance(const Vector3& point) const {
 
 ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double low, double high) {
   const HalfSquare half_square(piece, point);
-  // Of degree 2 order: between so many samples it has no more than one valley, but for lines that wind within an
-  // element.
+  // The polynomial has the degree 2 order. Between two of so many samples it has at most one minimum, except if the
+  // line winds strongly within an element.
   const int spans = 2 * piece.order;
   double begin = low, end = high, xi = low, least = std::numeric_limits<double>::infinity();
   const auto sample = [&](int i) { return i == spans ? high : low + (high - low) * i / spans; };
@@ -127,8 +127,8 @@ ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double 
     end = sample(std::min(i + 1, spans));
   }
   constexpr int kMostLooks = 60;
-  constexpr double kSmall = 1e-9;               // what Newton's step leaves then is its square
-  bool knows_begin = false, knows_end = false;  // which side of the valley they are on
+  constexpr double kSmall = 1e-9;               // after one more Newton step the error is the square of this
+  bool knows_begin = false, knows_end = false;  // whether the minimum is known to be between xi and begin, end
   for (int look = 0; look < kMostLooks; ++look) {
     const auto [slope, rise] = half_square.derivatives(xi);
     if (slope == 0 || (slope < 0 && xi == high) || (slope > 0 && xi == low)) break;

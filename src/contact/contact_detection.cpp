@@ -1,4 +1,4 @@
-// In which steps a contact acts, and which are too long for it. (docs/notes/contact.md 5)
+// Decides in which steps a contact may act, and which steps are too long for it. (docs/notes/contact.md 5)
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// So deep, of the depth, a corner may be in a shape without having come in by a face.
+/// How deep a corner may be in a shape without having entered by a face, relative to ContactLaw::depth.
 constexpr double kUnseen = 0.01;
 
 }  // namespace
@@ -40,7 +40,8 @@ double ContactElement::highest_speed(const ForceStart& start) const {
         motion.head<3>() + motion.tail<3>().cross(arm) - base.head<3>() - base.tail<3>().cross(base_arm);
     speed = std::max(speed, relative.norm());
   }
-  if (side_.nodes.size() > 1) return spread_ * speed;  // stations are on the line, wherever it turns to
+  // Stations of a beam are on its line, so rotations of nodes do not move them.
+  if (side_.nodes.size() > 1) return spread_ * speed;
   return speed + (motion_of(side_.nodes[0]) - base).tail<3>().norm() * own_radius_;
 }
 
@@ -67,7 +68,8 @@ ForceRoom ContactElement::room(const ForceStart& start) const {
   double least = std::numeric_limits<double>::infinity();
   for (const ContactShape& shape : surface_.shapes) least = std::min(least, shape.gap(bounds.middle));
   const double size = least - bounds.radius - kNear * size_;
-  // Both sides go, and what several nodes are apart changes by both of their ways. The shapes turn about their node.
+  // Both sides move. The distance between two nodes of the stations' side changes by the motions of both. The shapes
+  // rotate about their node.
   const double arm = surface_.node < 0 ? 0.0 : bounds.middle.norm() + std::max(size, 0.0);
   return {size, 2 + 2 * spread_, spread_ * (middle_arm_.norm() + 2 * own_radius_ + bounds.radius + arm)};
 }
@@ -99,7 +101,7 @@ bool ContactElement::is_too_long(const ContactStation& station, const ContactSha
   motion.duration = std::abs(step.duration);
   motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
   const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory);
-  // Of a corner that no face has seen coming in.
+  // A corner that has not entered by any face.
   if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
   const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
   const double begin_rate =

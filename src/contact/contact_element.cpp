@@ -17,7 +17,7 @@ namespace {
 
 using so3::hat;
 
-/// Freedoms of the most nodes that an element may have.
+/// Degrees of freedom of an element with the largest possible number of nodes.
 constexpr int kMostColumns = 6 * (ContactStation::kMostNodes + 1);
 template <int kColumns>
 using Rows3 =
@@ -68,7 +68,7 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
   return law;
 }
 
-void ContactElement::start(const State& state, double* memory) const {
+void ContactElement::start(const State& state, const double*, double* memory) const {
   const auto pose_of = poses_in(state);
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     put(start_inside(shape, law_, station.radius, place(station, pose_of),
@@ -86,13 +86,14 @@ void ContactElement::for_each_pair(const Visit& visit) const {
       if (!visit(station, shape)) return;
 }
 
-// ---------------------------------------------------------------- what it does
+// ---------------------------------------------------------------- forces
 
-/// Of both sides over a step; means where these count, else at the end.
+/// Data of both sides over a step: means over the step, or values at its end, as the scheme requires. "Base" is the
+/// node of the shapes. Rotation increments (turns) are tangent-scaled.
 struct ContactElement::Frames {
-  double weight;  // of the end in means
+  double weight;  // weight of the end in means
   NodePose base_begin, base_end;
-  Matrix3 axes;  // of the shapes
+  Matrix3 axes;  // axes of the shapes
   std::array<Vector3, ContactStation::kMostNodes> turns;
   Vector3 base_turn = Vector3::Zero();
 };
@@ -112,11 +113,11 @@ ContactElement::Frames ContactElement::frames(const ForceStep& step) const {
   return out;
 }
 
-/// A station over a step, world axes.
+/// A station over a step, in world axes.
 struct ContactElement::Placed {
-  Vector3 arm = Vector3::Zero(), end_arm = Vector3::Zero();  // from its only node
+  Vector3 arm = Vector3::Zero(), end_arm = Vector3::Zero();  // from its only node; zero for a beam
   Vector3 base_arm, end_base_arm;                            // from the shapes' node
-  Vector3 turn;                                              // less that of the shapes
+  Vector3 turn;                                              // rotation increment minus that of the shapes
 };
 
 ContactElement::Placed ContactElement::placed(const ContactStation& station, const Frames& frames,
@@ -139,7 +140,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   std::fill(step.new_memory, step.new_memory + memory_size(), 0.0);
   action.residual.setZero();
   action.tangent.setZero();
-  if (action.residual.size() == 0) {  // nothing is near
+  if (action.residual.size() == 0) {  // no nodes are near
     action.dissipated = remembered_energy(step);
     return;
   }
@@ -151,7 +152,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     PointMotion motion;
     motion.begin = place(station, poses_in(step.begin));
     motion.end = place(station, poses_in(step.end));
-    // No surface is nearer than the distance.
+    // The gap is a lower bound of the distance to the surface, so no contact is possible in this step.
     if (is_new && shape.gap(motion.begin) - station.radius > (motion.end - motion.begin).norm()) {
       memory += PointMemory::kSize;
       new_memory += PointMemory::kSize;
@@ -182,7 +183,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   });
 }
 
-/// Of what is remembered at the beginning of a step, and not felt any more [J].
+/// Energy stored in contacts at the beginning of a step [J]. It is dissipated if these do not touch any more.
 double ContactElement::remembered_energy(const ForceStep& step) const {
   double energy = 0;
   const double* memory = step.memory;
@@ -213,7 +214,8 @@ void ContactElement::add_tangent(const ContactStation& station, const Frames& fr
   const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
-  // Of the place at the end, of it in the shapes' frame, and of the turn there, by {displacement, spin} of all.
+  // Derivatives with respect to {displacement, spin} of all nodes: of the station's position at the end (`way`) and its
+  // rotation (`turn`) relative to the base, and of both in the shapes' frame (`seen`, `turned`).
   Rows3<kColumns> way = Rows3<kColumns>::Zero(3, base + 6 * has_base), turn = way;
   for (int i = 0; i < count; ++i) {
     way.template middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
@@ -307,7 +309,7 @@ int ContactElement::measures_each() const {
   return 1 + (law_.friction > 0 ? 2 : 0) + (law_.spinning > 0 ? 1 : 0) + (law_.rolling > 0 ? 2 : 0);
 }
 
-ForceMeasures ContactElement::measures(const State& state, const int*) const {
+ForceMeasures ContactElement::measures(const State& state, const double*, const int*) const {
   Eigen::Index count = 0;
   for_each_touching(state, [&](const ContactStation&, const SignedDistance&) { count += measures_each(); });
   const Eigen::Index columns = 6 * static_cast<Eigen::Index>(reach().size());
@@ -319,7 +321,7 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
     const Vector3 normal = base.rotation * distance.gradient;
     const Vector3 place = base.rotation * this->place(station, poses_in(state));  // from the shapes' node
     const Vector3 across = normal.unitOrthogonal(), third = normal.cross(across);
-    // Of what is `offset` from the station's middle, along an axis.
+    // Adds a measure: the relative displacement along an axis, at a point `offset` from the station's middle.
     const auto add = [&](const Vector3& axis, const Vector3& offset, double stiffness) {
       for (int i = 0; i < moving_nodes(); ++i) {
         const Vector3 arm = poses_in(state)(side_.nodes[i]).rotation * station.arm + offset;
@@ -339,7 +341,7 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
       ++row;
     };
     add(normal, Vector3::Zero(), contact_push(law, {0, station.radius - distance.value, 0}).slope);
-    // Sticking holds the surfaces, a radius below the station's middle.
+    // Friction acts at the surface, which is below the station's middle by the radius.
     const Vector3 below = -station.radius * normal;
     if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
     if (law.spinning > 0) add_turn(normal);
@@ -348,12 +350,12 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
   return out;
 }
 
-DamperTensions ContactElement::dampers(const State& state, const Eigen::VectorXd& rates) const {
+DamperTensions ContactElement::dampers(const State& state, const double*, const Eigen::VectorXd& rates) const {
   const int each = measures_each();
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
   for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
-    // Of what is pressed slowly, see contact_push().
+    // The damping for slow motions, see contact_push().
     const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
     slopes[row] = 2 * law_of(station).stiffness * law_.damping / law_.frequency * slope;
     row += each;

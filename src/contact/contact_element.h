@@ -1,5 +1,6 @@
 #pragma once
-/// Contact of what one body has to touch with, or an element of a beam, and what another body is: a force element.
+/// The force element of contact between the contact points of a body, or of a beam element, and the shapes of another
+/// body.
 
 #include <array>
 
@@ -8,28 +9,28 @@
 
 namespace flexarm {
 
-/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size of what
-/// touches.
+/// Bound of the motion in a step: kMoreWay times the step at the speed of its beginning, plus kNear times the size of
+/// the body with the stations.
 constexpr double kMoreWay = 2, kNear = 0.02;
-/// Cosine of normals at both ends of a step that goes to the other side of something thin.
+/// If the cosine between the normals at both ends of a step is below this, the point has passed through something thin.
 constexpr double kOtherSide = -0.5;
 
-/// Where a body or an element of a beam touches others: a ball around a point of its nodes' frames. Of a beam it is on
-/// its line, the sum of its nodes' positions with these weights.
+/// A contact point of a body or of a beam element: a ball (radius 0 for a corner). On a body its middle is fixed to the
+/// node. On a beam it is on the line: the sum of the nodes' positions times `weights`.
 struct ContactStation {
   static constexpr int kMostNodes = 5;
   std::array<double, kMostNodes> weights = {1};
-  Vector3 arm = Vector3::Zero();       ///< in the frame of the only node; zero of a beam [m]
-  double radius = 0;                   ///< [m]
-  double share = 1;                    ///< of the law's stiffnesses
-  Matrix3 outwards = Matrix3::Zero();  ///< of a corner, see ContactPoint, in the frame of the only node
+  Vector3 arm = Vector3::Zero();       ///< middle of the ball in the frame of the only node; zero for a beam [m]
+  double radius = 0;                   ///< of the ball [m]
+  double share = 1;                    ///< factor of the law's stiffnesses
+  Matrix3 outwards = Matrix3::Zero();  ///< for a corner, see ContactPoint, in the frame of the only node
 };
 
-/// Of a body, or of an element of a beam.
+/// The stations of a body, or of a beam element.
 struct ContactStations {
-  std::vector<int> nodes;  ///< one of a body, all of an element; -1: the world
+  std::vector<int> nodes;  ///< of a body one node, -1: the world; of a beam element all its nodes
   std::vector<ContactStation> stations;
-  int at_a_time = 1;  ///< so many touch where the side lies on something flat
+  int at_a_time = 1;  ///< how many stations touch if the body lies on a plane
 };
 /// The shapes of one body.
 struct ContactSurface {
@@ -37,13 +38,13 @@ struct ContactSurface {
   std::vector<ContactShape> shapes;
 };
 
-inline const NodePose kWorldPose;  ///< at the origin, not turned
+inline const NodePose kWorldPose;  ///< at the origin, with the world's axes
 
-/// Of all nodes; the world is where it is.
+/// Returns a function that returns the pose of a node, or the world's pose for -1.
 inline auto poses_in(const std::vector<NodePose>& nodes) {
   return [&nodes](int node) -> const NodePose& { return node < 0 ? kWorldPose : nodes[node]; };
 }
-/// Middle of a station at poses `pose_of(node)`, world axes [m].
+/// Returns the position of a station's middle at the poses `pose_of(node)`, in world axes [m].
 template <class PoseOf>
 Vector3 middle_of(const ContactStations& side, const ContactStation& station, const PoseOf& pose_of) {
   Vector3 middle = Vector3::Zero();
@@ -53,25 +54,24 @@ Vector3 middle_of(const ContactStations& side, const ContactStation& station, co
   }
   return middle;
 }
-/// Such a point in the frame of a surface [m].
+/// Returns a point, given in world axes, in the frame of a surface's node [m].
 template <class PoseOf>
 Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const PoseOf& pose_of) {
   const NodePose& body = pose_of(surface.node);
   return body.rotation.transpose() * (point - body.position);
 }
 
-/// Normals of the faces that meet in a station, see ContactPoint, in the frame of a surface.
+/// Returns the normals of the faces that meet in a station (see ContactPoint), in the frame of a surface's node.
 template <class PoseOf>
 Matrix3 outwards_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
                     const PoseOf& pose_of) {
   return pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.outwards;
 }
 
-/// Each station of one side with each shape of the other one.
+/// Contact of each station of one side with each shape of the other side.
 class ContactElement : public ForceElement {
  public:
-  /// `links`: names of the link with the stations, and of the link or ground with the shapes; `is_reversed`: the other
-  /// way round.
+  /// `links`: names of the two sides. The first has the stations and the second the shapes, unless `is_reversed`.
   ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law,
                  bool is_reversed = false, const std::string& name = "");
 
@@ -83,11 +83,11 @@ class ContactElement : public ForceElement {
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
   bool hits() const override { return true; }
   double energy(const State& state, const double* memory) const override;
-  /// Of points that touch: their gaps, and where they stick how far they slip.
-  ForceMeasures measures(const State& state, const int* nodes) const override;
-  DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
+  /// The measures of points that touch: the gap; with friction, the slip; with resistance to turning, the rotation.
+  ForceMeasures measures(const State& state, const double* memory, const int* nodes) const override;
+  DamperTensions dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
-  void start(const State& state, double* memory) const override;
+  void start(const State& state, const double* functions, double* memory) const override;
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   TouchLaw touch_law() const override {
     return {side_.stations.size() * surface_.shapes.size(),
@@ -102,10 +102,10 @@ class ContactElement : public ForceElement {
  private:
   struct Frames;
   struct Placed;
-  /// Of the stations' nodes those that move.
+  /// Returns the number of the stations' nodes; 0 if these are fixed to the world.
   int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
-  /// Numbers of a point's measures: its gap, and what sticks.
+  /// Returns the number of measures of a point that touches.
   int measures_each() const;
   static PointMemory memory_at(const double* numbers) {
     return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5],
@@ -119,15 +119,15 @@ class ContactElement : public ForceElement {
     numbers[6] = memory.start;
     Eigen::Map<Vector3>(numbers + 7) = memory.turned;
   }
-  /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
+  /// Returns the position of a station's middle in the frame of the shapes, at the poses `pose_of(node)` [m].
   template <class PoseOf>
   Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
     return seen_from(surface_, middle_of(side_, station, pose_of), pose_of);
   }
-  /// By how much it moves there [m/s].
+  /// Returns the velocity of a station's middle relative to the shapes, in their frame [m/s].
   template <class PoseOf>
   Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities) const;
-  /// Whether a step is too long for one of them; `acts`: see needs_halves().
+  /// Whether a step is too long for one station and shape. `acts`: the element acts on nodes in this step.
   bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
                    const ForceStep& step, bool acts) const;
   Frames frames(const ForceStep& step) const;
@@ -135,23 +135,23 @@ class ContactElement : public ForceElement {
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
   void add(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
            ForceAction& action) const;
-  /// `kColumns`: six for each node that moves, or Eigen::Dynamic.
+  /// `kColumns`: six for each moving node, or Eigen::Dynamic.
   template <int kColumns>
   void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
                    ForceAction& action) const;
-  /// A ball that holds all stations.
+  /// A ball that contains all stations.
   struct Bounds {
     Vector3 middle;  // in the frame of the shapes [m]
     double radius;   // [m]
   };
   template <class PoseOf>
   Bounds bounds(const PoseOf& pose_of) const;
-  /// No station is faster there at the beginning of a step [m/s].
+  /// Returns a bound of the stations' speeds relative to the shapes, at the beginning of a step [m/s].
   double highest_speed(const ForceStart& start) const;
-  /// Calls visit(station, shape) of all, in the order of the memory, until it returns false.
+  /// Calls visit(station, shape) for all pairs in the order of the memory, until it returns false.
   template <class Visit>
   void for_each_pair(const Visit& visit) const;
-  /// Calls visit(station, signed distance) of those that touch.
+  /// Calls visit(station, signed distance) for all pairs that touch.
   template <class Visit>
   void for_each_touching(const State& state, const Visit& visit) const;
 
@@ -160,9 +160,10 @@ class ContactElement : public ForceElement {
   ContactSurface surface_;
   ContactLaw law_;
   bool is_reversed_;
-  double size_ = 0;                       ///< of the stations' side, about its first node [m]
-  Vector3 middle_arm_ = Vector3::Zero();  ///< of the stations' middle, in the frame of the only node [m]
-  double own_radius_ = 0, spread_ = 1;    ///< of stations: about their nodes [m], and of what these are apart
+  double size_ = 0;                       ///< largest distance of a station's surface from its node [m]
+  Vector3 middle_arm_ = Vector3::Zero();  ///< mean of the stations' arms, in the frame of the only node [m]
+  /// The stations are in a ball of the radius own_radius_ + spread_ * (largest distance of a node from the mean) [m].
+  double own_radius_ = 0, spread_ = 1;
 };
 
 template <class PoseOf>

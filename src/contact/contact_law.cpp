@@ -10,15 +10,17 @@
 namespace flexarm {
 namespace {
 
-/// Angle that a step may go through of the oscillator that a contact is, and the part of a hit that is worth it.
+/// A step is too long if it advances the phase of the contact's oscillator by more than kLargestAngle, and covers more
+/// than the part kLargestPart of a hit.
 constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
-/// Of the speed with which the deepest start is thrown out: slower hits are none. What begins to touch at rest goes
-/// through all of its motion in every step, however short.
+/// Hits below this speed are not resolved. Relative to the speed at which the deepest penetration that still acts from
+/// the surface (ContactLaw::most_start) would be pushed out. Without this bound, a contact that begins at rest would
+/// cover all of its motion in every step, however short.
 constexpr double kSlow = 1e-3;
-/// A start inside falls to the e-th part in the time in which the contact's oscillator goes through this angle.
+/// An initial penetration decays to 1/e while the contact's oscillator advances by this phase angle.
 constexpr double kLetOutAngle = 100;
 
-/// Across the normal; at most `most`, which grows by `most_by_push`.
+/// The part of a stretch normal to `normal`, of length at most `most`. `most_by_push`: derivative of `most`.
 ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
   const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
   const Vector3 trial = tangential * whole;
@@ -30,7 +32,7 @@ ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most
   return {most * along, turn * tangential, turn * by_normal, most_by_push * along};
 }
 
-/// Along the normal.
+/// The part of a stretch along `normal`, of length at most `most`.
 ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
   const double size = normal.dot(whole);
   if (std::abs(size) <= most)
@@ -70,7 +72,7 @@ ContactPush contact_push(const ContactLaw& law, const ContactChange& change) {
   const double elastic = k * rise.value * mean, slope = k * (rise.slope * mean + 0.5 * rise.value * x1.slope);
   const double way = change.end - change.begin, stored = k * (x1.value - x0) * mean;
   if (law.damping == 0) return {elastic, slope, 0};
-  // What is pressed slowly is damped as if it hit with half the speed that its penetration stands for.
+  // Slow contacts are damped like hits with half of the speed that belongs to their penetration.
   const double bound = 0.5 * law.frequency * mean, alpha = law.damping / std::max(change.speed, bound);
   const double factor = 1 + alpha * way / change.duration;
   if (factor <= 0) return {0, 0, -stored};
@@ -88,7 +90,7 @@ double push_at(const ContactLaw& law, double penetration, double rate, double sp
 
 bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement) {
   const double x0 = hardened({change.begin, law.depth}).value, x1 = hardened({change.end, law.depth}).value;
-  const bool conserves = law.damping == 0 && std::isinf(law.depth);  // at any angle
+  const bool conserves = law.damping == 0 && std::isinf(law.depth);  // for steps of any length
   if (conserves || (x0 == 0 && x1 == 0)) return false;
   const double way = change.end - change.begin, end_rate = 2 * way / change.duration - begin_rate;
   const double rise = way == 0 ? 1.0 : std::max((x1 - x0) / way, std::isinf(law.depth) ? 1.0 : 0.0);

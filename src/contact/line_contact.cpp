@@ -58,7 +58,7 @@ double LineContact::stiffening(const LinePair& pair, const ClosestPoint& place, 
 bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int count) const {
   if (step.duration == 0) return false;
   const double way = search_.way(step);
-  if (way < 0) return false;  // nothing was touched
+  if (way < 0) return false;  // nothing can have touched
   const NodePlaces first(step.begin), last(step.end);
   const LineSearch::Middles from = search_.middles(first), to = search_.middles(last);
   const LineSearch::Places begin = search_.closest(from, way, first, {}), end = search_.closest(to, way, last, {});
@@ -85,7 +85,7 @@ bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int coun
   return false;
 }
 
-// ---------------------------------------------------------------- what it does
+// ---------------------------------------------------------------- forces
 
 Vector3 LineContact::velocity(const LinePair& pair, const LineWeights& weights, int element, const NodePlaces& places,
                               const std::vector<Vector6>& velocities) const {
@@ -100,7 +100,7 @@ Vector3 LineContact::velocity(const LinePair& pair, const LineWeights& weights, 
   return out;
 }
 
-/// Of the penetration [m/s].
+/// Rate of the penetration [m/s].
 double LineContact::rate(const LinePair& pair, const ClosestPoint& place, const NodePlaces& places,
                          const std::vector<Vector6>& velocities) const {
   const Vector3 offset = search_.offset(search_.middle(search_.station(pair), places), place, places);
@@ -109,7 +109,7 @@ double LineContact::rate(const LinePair& pair, const ClosestPoint& place, const 
   return distance > 0 ? -offset.dot(velocity(pair, weights, place.element, places, velocities)) / distance : 0.0;
 }
 
-/// Where the nearest place will be in the middle of the step, as it moves at its beginning: xi.
+/// Predicts xi of the nearest place in the middle of the step, from its speed along the line at the beginning.
 double LineContact::foreseen(const LinePair& pair, const ClosestPoint& begin, const ForceStep& step) const {
   if (begin.is_clamped || step.duration == 0) return begin.xi;
   const NodePlaces places(step.begin);
@@ -198,7 +198,7 @@ void LineContact::evaluate(const ForceStep& step, const int* nodes, ForceAction&
     action.dissipated += 0.5 * law_of(search_.pairs()[k], old.stiffening).grip * old.stretch.squaredNorm();
   };
   const ListedNodes listed{nodes, static_cast<int>(action.residual.size() / 6)};
-  if (listed.count == 0) {  // nothing is near
+  if (listed.count == 0) {  // no nodes are near
     for (std::size_t k = 0; k < count; ++k) let_go(k);
     return;
   }
@@ -219,7 +219,7 @@ void LineContact::evaluate(const ForceStep& step, const int* nodes, ForceAction&
       let_go(k);
       continue;
     }
-    if (begin[k].element < 0 || end[k].element < 0) {  // poses that are not finite
+    if (begin[k].element < 0 || end[k].element < 0) {  // some pose is not finite
       action.residual.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
@@ -259,7 +259,7 @@ void LineContact::for_each_touching(const NodePlaces& now, const Visit& visit) c
     if (places[k].element >= 0) visit(search_.pairs()[k], places[k], search_.offset(middles[k], places[k], now));
 }
 
-void LineContact::start(const State& state, double* memory) const {
+void LineContact::start(const State& state, const double*, double* memory) const {
   const NodePlaces now(state);
   const LineSearch::Places places = search_.closest(search_.middles(now), 0, now, {});
   for (std::size_t k = 0; k < search_.pairs().size(); ++k, memory += LineMemory::kSize) {
@@ -293,7 +293,7 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
     LineMemory old = line_memory_at(motion.memory + LineMemory::kSize * k);
     if (old.stiffening == 0) old.stiffening = stiffening(pair, places[k], now);
     const ContactLaw law = law_of(pair, old.stiffening);
-    const Vector3 normal = search_.offset(middles[k], places[k], now) / distance;  // of the line
+    const Vector3 normal = search_.offset(middles[k], places[k], now) / distance;  // from the line to the station
     const double rate = this->rate(pair, places[k], now, motion.velocities) + let_out_rate(law, old.start);
     const double felt = std::max(0.0, -gap - old.start);
     const double push = push_at(law, felt, rate, approach_speed(felt, rate, old.speed));
@@ -310,7 +310,7 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
   return least;
 }
 
-ForceMeasures LineContact::measures(const State& state, const int* nodes) const {
+ForceMeasures LineContact::measures(const State& state, const double*, const int* nodes) const {
   const NodePlaces now(state);
   std::vector<NodePose> poses;
   for (const NodeState& node : state.nodes) poses.push_back(node_pose(node));
@@ -333,7 +333,7 @@ ForceMeasures LineContact::measures(const State& state, const int* nodes) const 
     const Vector3 normal = offset / std::max(offset.norm(), 1e-300), across = normal.unitOrthogonal();
     const Vector3 axes[] = {normal, across, normal.cross(across)};
     for (int k = 0; k < each; ++k, ++row) {
-      // Sticking holds the surfaces, a radius below the station's middle.
+      // Friction acts at the surface, which is below the station's middle by the radius.
       const Vector3 below = k == 0 ? Vector3(Vector3::Zero()) : Vector3(-station.radius * normal);
       for (int i = 0; i < search_.moving_nodes(); ++i) {
         const int node = search_.side().nodes[i];
@@ -349,13 +349,13 @@ ForceMeasures LineContact::measures(const State& state, const int* nodes) const 
   return out;
 }
 
-DamperTensions LineContact::dampers(const State& state, const Eigen::VectorXd& rates) const {
+DamperTensions LineContact::dampers(const State& state, const double*, const Eigen::VectorXd& rates) const {
   const NodePlaces now(state);
   const int each = law_.friction > 0 ? 3 : 1;
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
   for_each_touching(now, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
-    // Of what is pressed slowly, see contact_push().
+    // The damping for slow motions, see contact_push().
     const double rise = hardened({search_.radius_of(pair) - offset.norm(), law_.depth}).slope;
     slopes[row] = 2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.damping / law_.frequency * rise;
     row += each;

@@ -27,10 +27,11 @@ void LineActing::add_tangent_to(ForceAction& action) const {
   for (int j = 0; j < count; ++j) {
     const Node& column = nodes[j];
     const double way = column.side - column.line;
-    Matrix6 slope;  // of the wrench
+    Matrix6 slope;  // derivative of the wrench
     slope.leftCols<3>() = way * local.by_end + (column.side - column.nearest) * by_distance;
     slope.rightCols<3>() = (column.side * local.by_turn + column.line * local.by_line_turn) * column.by_spin;
-    Eigen::Matrix<double, 3, 6> moved = Eigen::Matrix<double, 3, 6>::Zero();  // the station less the line
+    // Derivative of the vector from the line to the station.
+    Eigen::Matrix<double, 3, 6> moved = Eigen::Matrix<double, 3, 6>::Zero();
     moved.leftCols<3>().diagonal().setConstant(way);
     if (j == body) {
       slope.rightCols<3>() -= (local.by_end + by_distance) * end_hat;
@@ -66,7 +67,7 @@ void LineActing::add_push_to(ForceAction& action) const {
     const Node& column = nodes[j];
     const double way = column.side - column.nearest;
     Eigen::Matrix<double, 3, 6> slope = Eigen::Matrix<double, 3, 6>::Zero();
-    Row place = Row::Zero();  // how xi goes along
+    Row place = Row::Zero();  // derivative of xi
     slope.leftCols<3>() = way * stiffness;
     place.head<3>() = way * tangent.transpose() + column.slope * nearest.transpose();
     if (j == body) {

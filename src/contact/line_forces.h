@@ -1,5 +1,6 @@
 #pragma once
-/// Forces of a ball and a tube that touch on the nodes of both, with their tangent. (docs/notes/contact.md 1.3)
+/// Distributes the contact forces of a ball and a tube to the nodes of both, with their tangent. (docs/notes/contact.md
+/// 1.3)
 
 #include <algorithm>
 #include <array>
@@ -9,37 +10,38 @@
 
 namespace flexarm {
 
-/// A pair that touches, over a step.
+/// A touching pair of a station (ball) and a line (tube) over a step.
 struct LineActing {
   struct Node {
-    int at = 0;                              // in the action
-    double side = 0, line = 0, nearest = 0;  // weights of the station, of the line in means, and where it is nearest
-    double slope = 0;                        // of the last, by xi
-    Matrix3 by_spin;                         // of its tangent-scaled turn
+    int at = 0;  // index of the node in the ForceAction
+    // Weights: of the station; of the line's place in means; of the nearest place at the end.
+    double side = 0, line = 0, nearest = 0;
+    double slope = 0;  // d(nearest)/d(xi)
+    Matrix3 by_spin;   // derivative of its tangent-scaled rotation with respect to its spin
   };
   std::array<Node, 3 * 5> nodes;
   int count = 0;
-  int body = -1;                                             // of these, where the station is a body's
-  Vector3 arm = Vector3::Zero(), end_arm = Vector3::Zero();  // of the station from there
-  double weight = 0.5;                                       // of the end
+  int body = -1;                                             // index in `nodes` of a body's node; -1: a beam
+  Vector3 arm = Vector3::Zero(), end_arm = Vector3::Zero();  // from the body's node to the station
+  double weight = 0.5;                                       // weight of the end of the step in means
   Vector3 middle;                                            // from the line to the station
-  Vector3 nearest, tangent;                                  // at the end: from the nearest place, by xi there
-  double rise = 0;                                           // of nearest . tangent by -xi; 0: the place stays
+  Vector3 nearest, tangent;  // at the end: from the nearest place to the station; d(place)/d(xi)
+  double rise = 0;           // -d(nearest . tangent)/d(xi); 0: the nearest place does not move
   LineAction local;
 
-  /// Of a number in the action.
+  /// Returns the entry of the node with this index in the ForceAction; adds it if it is not there.
   Node& node(int at) {
     for (int i = 0; i < count; ++i)
       if (nodes[i].at == at) return nodes[i];
     nodes[count].at = at;
     return nodes[count++];
   }
-  /// At the end.
+  /// The unit normal at the end, from the line to the station.
   Vector3 normal() const { return nearest / std::max(nearest.norm(), 1e-300); }
 
-  /// The wrench of `local`, and its tangent where that is asked for.
+  /// Adds the wrench of `local`, and its tangent if the action has one.
   void add_to(ForceAction& action) const;
-  /// At an instant: the push along the normal, to where the line is nearest.
+  /// For forces at an instant: adds the normal force, which acts on the line at its nearest place.
   void add_push_to(ForceAction& action) const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 using so3::hat;
 
-/// Motions too short for a correction along them, relative to the radii.
+/// Relative motions shorter than this, relative to the radii, get no correction.
 constexpr double kShortMotion = 1e-6;
 
 Vector3 unit_or_zero(const Vector3& v) {
@@ -19,11 +19,12 @@ Vector3 unit_or_zero(const Vector3& v) {
   return length > 0 ? Vector3(v / length) : Vector3(Vector3::Zero());
 }
 
-/// Gradient of the distance by {what the ball moves against the line, how it turns against it}, made exact.
+/// Adds the normal force. Its direction is the gradient of the distance with respect to {relative displacement,
+/// relative rotation} of ball and line, with a correction that makes the work over the step exact.
 void add_line_push(const LineRadii& radii, const LineMotion& motion, bool with_slope, LineAction& action) {
   const Vector3 middle = 0.5 * (motion.begin + motion.end), along_end = unit_or_zero(motion.end);
   const double size = motion.begin.norm() + motion.end.norm();
-  if (size == 0) return;  // no direction
+  if (size == 0) return;  // the force has no direction
   const Vector3 normal = (motion.begin + motion.end) / size;
   const double arm = radii.sum * radii.sum;
   Vector6 way, along, gradient;
@@ -43,7 +44,7 @@ void add_line_push(const LineRadii& radii, const LineMotion& motion, bool with_s
     const Matrix3 way_by_end = Matrix3::Identity() - 0.5 * hat(motion.line_turn);
     const double ratio = missing / square;
     const Vector3 towards = along.head<3>(), turned = along.tail<3>();
-    const auto by_way = [&](const Matrix3& of_way) {  // of {way, 0}
+    const auto by_way = [&](const Matrix3& of_way) {  // for a variation {of_way, 0} of `way`
       LineAction::Columns out;
       out.topRows<3>() = ratio * of_way;
       out.bottomRows<3>().setZero();
@@ -60,7 +61,7 @@ void add_line_push(const LineRadii& radii, const LineMotion& motion, bool with_s
   action.by_end = action.push.value * by_end;
 }
 
-/// Half the turn of w, and what it turns by per change of w.
+/// Half of the rotation with the tangent-scaled vector w, and the derivative of its spin with respect to w.
 struct HalfTurn {
   Matrix3 rotation, spin;
 };
@@ -71,7 +72,7 @@ HalfTurn half_turn(const Vector3& w) {
   return {cayley::rotation(half), cayley::tangent(half) * by_w};
 }
 
-/// Friction on the ball's surface.
+/// Adds friction at the ball's surface.
 void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion, const LineMemory& memory,
                    bool with_slope, LineAction& action) {
   const double weight = motion.at_end ? 1 : 0.5, length_least = 1e-12 * radii.sum;
@@ -114,7 +115,8 @@ void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMoti
 LineAction line_action(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion,
                        const LineMemory& memory, bool with_slope) {
   LineAction out;
-  out.dissipated = 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
+  // Energy stored at the beginning; what is stored at the end is subtracted below.
+  out.dissipated = 0.5 * law.grip * memory.stretch.squaredNorm();
   const double start = motion.duration != 0 ? memory.start : 0.0, end_start = let_out(law, start, motion.duration);
   ContactChange change{radii.sum - start - motion.begin_distance, radii.sum - end_start - motion.end_distance,
                        motion.at_end ? 0.0 : motion.duration};

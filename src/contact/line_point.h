@@ -1,42 +1,43 @@
 #pragma once
-/// What a ball does that touches a tube along a line, over a step. World axes. (docs/notes/contact.md 1.3)
+/// The contact forces between a ball and a tube around a line, over a step, in world axes. (docs/notes/contact.md 1.3)
 
 #include "contact/contact_law.h"
 
 namespace flexarm {
 
-/// Over a step. The line's weights are those of one place of it, the same at both ends of the step.
+/// The relative motion of the ball and a place of the line over a step. The place is the same at both ends of the step.
 struct LineMotion {
   Vector3 begin, end;                   ///< from that place of the line to the ball's middle [m]
-  double begin_distance, end_distance;  ///< of the middle from what is nearest of the line [m]
-  Vector3 turn, line_turn;              ///< of the ball, and of the line there, tangent-scaled
-  double begin_rate = 0;                ///< of the penetration, at the beginning [m/s]
+  double begin_distance, end_distance;  ///< of the ball's middle from the nearest place of the line [m]
+  Vector3 turn, line_turn;              ///< rotations of the ball and of the line at that place, tangent-scaled
+  double begin_rate = 0;                ///< rate of the penetration at the beginning [m/s]
   double duration = 0;                  ///< [s]; 0: an equilibrium
-  bool at_end = false;                  ///< what acts at the end counts; else means, whose work is exact
+  bool at_end = false;                  ///< forces are those at the end; else means over the step, with exact work
 };
-/// Zero where they do not touch.
+/// What a contact remembers from step to step. All numbers are zero without contact.
 struct LineMemory {
   static constexpr int kSize = 6;
   double speed = 0;                   ///< see remembered_speed()
-  Vector3 stretch = Vector3::Zero();  ///< of the grip, world axes; it turns with the line
-  double stiffening = 0;              ///< of the law's stiffnesses, kept as long as it touches; 0: not yet known
-  double start = 0;                   ///< so far inside nothing is felt yet, see let_out() [m]
+  Vector3 stretch = Vector3::Zero();  ///< of friction, see ContactGrip; in world axes, rotates with the line [m]
+  double stiffening = 0;              ///< factor of the law's stiffnesses, constant during a contact; 0: not set yet
+  double start = 0;                   ///< offset of the penetration, see let_out() [m]
 };
-/// On the ball: a force through its middle and a couple; the reverse acts on the line, through the same middle. Of an
-/// instant it is the friction alone: the push goes along the normal, to where the line is nearest. Not finite at an
-/// instant at which it is too deep inside.
+/// The forces on the ball: a force through its middle and a couple. The opposite wrench acts on the line, about the
+/// same middle. For forces at an instant, the wrench has only friction; `push` then acts along the normal, on the
+/// nearest place of the line. The wrench is NaN at an instant with too deep a penetration.
 struct LineAction {
   Vector6 wrench = Vector6::Zero();
   using Columns = Eigen::Matrix<double, 6, 3>;
+  /// Derivatives of the wrench with respect to members of LineMotion: end, turn, line_turn, end_distance.
   Columns by_end = Columns::Zero(), by_turn = Columns::Zero(), by_line_turn = Columns::Zero();
-  Vector6 by_distance = Vector6::Zero();  ///< at the end
+  Vector6 by_distance = Vector6::Zero();
   ContactPush push;
   LineMemory memory;      ///< at the end of the step
-  double dissipated = 0;  ///< [J]
-  double work = 0;        ///< that letting out has done [J]
-  bool acts = false;
+  double dissipated = 0;  ///< over the step [J]
+  double work = 0;        ///< done by the decay of the offset, see let_out() [J]
+  bool acts = false;      ///< the ball and the tube touch in the step
 };
-/// `radii`: of the ball, and of the ball and the tube together [m].
+/// The radius of the ball, and the sum of the radii of ball and tube [m].
 struct LineRadii {
   double ball, sum;
 };

@@ -10,15 +10,16 @@
 namespace flexarm {
 namespace {
 
-/// Elements of a line that may act in a step: at most, and besides those beside which the stations are.
+/// Number of the line's elements that may act in a step: at most kMostNear, and kMoreNear more than the stations' side
+/// can cover by its size.
 constexpr int kMostNear = 8, kMoreNear = 3;
-/// No place of an element moves more than this times the largest motion of its nodes.
+/// A place of an element moves at most by this factor times the largest motion of the element's nodes.
 constexpr double kLebesgue = 1.7;
-/// No element becomes longer than this times what it was.
+/// An element becomes at most this many times as long as undeformed.
 constexpr double kLonger = 1.5;
-/// Part of the way to a line by which places along it are passed over.
+/// If a place of the line is far, elements along the line are skipped over this part of the distance.
 constexpr double kPassedOver = 0.5;
-/// Of the radii: by so much stations may be nearer than those between which they are.
+/// Stations between two tested ones may be nearer by this part of the radius.
 constexpr double kInBetween = 0.25;
 
 }  // namespace
@@ -45,7 +46,8 @@ LineSearch::LineSearch(LineTouch touch) : touch_(std::move(touch)) {
   most_near_ = static_cast<int>(std::min(kMoreNear + std::ceil(size / shortest), 1.0 * kMostNear));
   const int most = static_cast<int>(side().nodes.size()) + most_near_ * (line().order + 1);
   most_nodes_ = std::min(most, static_cast<int>(reach().size()));
-  // Their distances change no faster along the line than places do, and the parts of the line that they may touch.
+  // From one station to the next, the distance to the line changes at most by twice the deformed spacing: the station
+  // moves, and so does the part of the line that it may touch.
   if (touch_.spacing == 0) return;
   const double change = 2 * kLonger * touch_.spacing;
   stride_ = std::max<std::size_t>(static_cast<std::size_t>(kInBetween * largest_radius_ / change), 1);
@@ -100,7 +102,7 @@ LinePiece LineSearch::piece(int element, const NodePlaces& places) const {
   return line_piece(line().order, nodes);
 }
 
-/// A ball around all middles.
+/// A ball that contains the middles of all stations.
 struct LineSearch::Cloud {
   Vector3 middle;
   double reach;
@@ -115,7 +117,7 @@ LineSearch::Cloud LineSearch::cloud(const NodePlaces& places) const {
   return out;
 }
 
-/// Between places of the line that are far, and as far along it as they are, nothing is near.
+/// If a place of the line is far from the cloud, its neighbours along the line are far, too: they are skipped.
 template <class MarginOf, class Visit>
 void LineSearch::for_each_near(const Cloud& cloud, const NodePlaces& places, const MarginOf& margin_of,
                                const Visit& visit) const {
@@ -133,7 +135,7 @@ void LineSearch::for_each_near(const Cloud& cloud, const NodePlaces& places, con
   }
 }
 
-/// Of a pair on one element; no element: it does not touch that.
+/// Returns the nearest place of a pair on one element. Its `element` is -1 if the pair does not belong to that element.
 ClosestPoint LineSearch::closest(const LinePiece& piece, int element, std::size_t pair, const Vector3& middle) const {
   const LineRange& range = pairs()[pair].range;
   const double low = std::max(2 * (range.begin - element) - 1, -1.0);
@@ -144,7 +146,8 @@ ClosestPoint LineSearch::closest(const LinePiece& piece, int element, std::size_
   return found;
 }
 
-/// Whether a pair may be nearer on an element than the largest radius and `margin`, a little more included.
+/// Whether any pair may be nearer to an element than the largest radius plus `margin`. May be true for slightly larger
+/// distances.
 bool LineSearch::is_any_near(int element, double margin, const NodePlaces& places) const {
   const LinePiece piece = this->piece(element, places);
   const double most = largest_radius_ + margin + between_;
@@ -179,7 +182,7 @@ LineSearch::Places LineSearch::closest(const Middles& middles, double margin, co
 
 // ---------------------------------------------------------------- steps
 
-/// Speed of no station is larger [m/s].
+/// Returns a bound of the stations' speeds [m/s].
 double LineSearch::fastest(const Cloud& cloud, const ForceStart& start) const {
   double fastest = 0;
   for (int i = 0; i < moving_nodes(); ++i) {
@@ -195,14 +198,14 @@ int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   const Cloud cloud = this->cloud(places);
   const double way = kMoreWay * std::abs(start.duration), own = start.duration == 0 ? 0 : fastest(cloud, start);
   const auto margin_of = [&](int k) {
-    // Of an equilibrium: what it may come to by a step of the load.
+    // In an equilibrium: elements that a load step may bring into contact.
     if (start.duration == 0) return 4 * largest_radius_ + cloud.reach;
     double speed = 0;
     for (int i = 0; i <= line().order; ++i)
       speed = std::max(speed, start.velocities[line().elements[k][i]].head<3>().norm());
     return (1 + kNear) * largest_radius_ + way * (own + kLebesgue * speed);
   };
-  std::array<std::pair<double, int>, kMostNear> near;  // by how near they are
+  std::array<std::pair<double, int>, kMostNear> near;  // {distance, element}, nearest first
   int found = 0;
   for_each_near(cloud, places, margin_of, [&](int k, double margin) {
     const double distance = std::sqrt(closest_point(piece(k, places), cloud.middle, -1, 1).square);
@@ -232,7 +235,7 @@ ForceRoom LineSearch::room(const ForceStart& start) const {
     const double distance = (places.position(line().elements[k][line().order / 2]) - cloud.middle).norm();
     least = std::min(least, distance - kLonger * line().lengths[k]);
   }
-  // The cloud and the line go, and what its nodes are apart changes by both of their ways.
+  // The cloud and the line move, and the distance between two nodes of the cloud changes by the motions of both.
   return {least - cloud.reach - (1 + kNear) * largest_radius_, 2 + 2 * kLebesgue, 2 * largest_arm_};
 }
 
@@ -266,12 +269,13 @@ bool LineSearch::passes_through(std::size_t index, const ClosestPoint& begin, co
   const NodePlaces first(step.begin), last(step.end);
   const ContactStation& station = this->station(pairs()[index]);
   const Vector3 from = middle(station, first), to = middle(station, last);
-  // Towards a straight line distances are convex: lowest at an end unless they fall first and rise then.
+  // The distance from a straight line is convex along the way. Its minimum is at an end, unless it first falls and then
+  // rises.
   const auto change = [&](const ClosestPoint& place) {
     return Vector3(offset(to, place, last) - offset(from, place, first));
   };
   if (offset(from, begin, first).dot(change(begin)) >= 0 || offset(to, end, last).dot(change(end)) <= 0) return false;
-  constexpr double kLeast = 1.0 / 64;  // of the way, per look
+  constexpr double kLeast = 1.0 / 64;  // smallest advance, relative to `way`
   while (gone < way) {
     const double part = gone / way;
     Middles middles;

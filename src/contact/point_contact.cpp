@@ -10,17 +10,17 @@ namespace {
 
 using so3::hat;
 
-/// Ways too short for a correction along them, relative to where the points are.
+/// Motions shorter than this, relative to the distance from the shape's origin, get no correction.
 constexpr double kShort = 1e-6;
-/// Of the depth: so low an edge holds nothing back.
+/// An edge that is lower than this does not hold a corner back. Relative to ContactLaw::depth.
 constexpr double kLow = 0.2;
 
-/// Where it is pushed: what grips needs of that.
+/// Normal force and normal, which friction and resistance to turning depend on, with their derivatives.
 struct Pushed {
   double push;
-  Vector3 normal;       ///< unit
-  Matrix3 by_end;       ///< of the normal
-  Vector3 push_by_end;  ///< of the push
+  Vector3 normal;       ///< unit vector
+  Matrix3 by_end;       ///< derivative of the normal with respect to the point at the end
+  Vector3 push_by_end;  ///< derivative of the push with respect to the point at the end
 };
 Pushed pushed(const GapChange& gap, const ContactPush& push) {
   const double length = gap.gradient.norm();
@@ -29,7 +29,7 @@ Pushed pushed(const GapChange& gap, const ContactPush& push) {
           -push.slope * gap.end_gradient};
 }
 
-/// Friction on the surface of the ball, a radius off its middle.
+/// Adds friction, which acts at the surface of the ball.
 void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const Pushed& pushed,
               const Vector3& stretch, bool with_slope, PointAction& action) {
   const Vector3 offset = -radius * pushed.normal;
@@ -52,7 +52,7 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_end;
 }
 
-/// What resists to turning against the surface.
+/// Adds the resistance to rotation relative to the surface.
 void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushed& pushed, const Vector3& turned,
                    bool with_slope, PointAction& action) {
   const ContactGrip grip = turn_grip(law, turned, motion.turn, pushed.normal, pushed.push);
@@ -66,17 +66,20 @@ void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushe
   action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
 }
 
-/// What sticking stores [J].
+/// Energy that is stored by sticking [J].
 double held_energy(const ContactLaw& law, const PointMemory& memory) {
   return 0.5 * (law.grip * memory.stretch.squaredNorm() + law.turn_grip * memory.turned.squaredNorm());
 }
 
-/// Of half the least width, and round-off: beyond that a point has not come in by that face.
+/// A point deeper below a face than this, relative to half of the shape's smallest width, has not entered by that face.
+/// The excess over 1 is for round-off.
 constexpr double kHalfWay = 1 + 1e-6;
 
-/// The edge of a table comes into a block that slides off it by the block's front, but it is the block's bottom that
-/// lies on it, deeper by what both give way. A corner that slides from one table to the next one meets an edge that is
-/// as low. Where it comes in is where it begins to be felt, so that nothing is stored.
+/// Replaces the face by which a corner or edge enters by one that it lies on, if there is one. Example: a block slides
+/// off a table. The table's edge enters the block through its front, but it should push against the block's bottom. The
+/// edge is already above the bottom by the penetration of the resting contact. The same happens if a corner slides from
+/// one table to another of equal height. Forces begin at the depth at which the point enters, so that no energy is
+/// stored at once.
 void lay_on_another(const ContactShape& shape, const ContactLaw& law, const PointMotion& motion, FeltShape& felt) {
   const double deepest = (can_lie_on(shape, felt.face, motion.outwards) ? kLow : 1.0) * law.depth;
   const int face = face_to_lie_on(shape, felt.face, motion.begin, motion.outwards, deepest);
@@ -109,7 +112,7 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
                      const PointMemory& memory) {
   FeltShape out{shape};
   out.radius = radius;
-  out.start = motion.duration != 0 ? memory.start : 0;  // an equilibrium knows of no start
+  out.start = motion.duration != 0 ? memory.start : 0;  // equilibria have no offset
   if (radius > 0 || !has_faces(shape)) return out;
   const Vector3& from = motion.begin;
   out.face = memory.face;
@@ -127,7 +130,7 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);
   if (memory.face != out.face) out.start = std::min(out.start, std::max(0.0, -out.shape.distance(from).value));
-  // What it has left one face of a hull for the next one with is still there.
+  // Energy that the point keeps when it moves from one face of a hull to the next is not lost.
   if (out.is_felt && out.let_go > 0)
     out.let_go -= contact_energy(law, out.radius - out.start - out.shape.distance(from).value);
   return out;
@@ -139,7 +142,7 @@ PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, doubl
   const bool by_face = radius == 0 && has_faces(shape);
   if (shape.distance(point).value - radius > kLeastStart) return out;
   if (by_face) {
-    // Corners of equal boxes lie on edges, and are nearest to a side.
+    // If equal boxes lie on each other, corners are at edges, and the nearest face may be a side.
     out.face = nearest_face(shape, point);
     if (!can_lie_on(shape, out.face, outwards))
       if (const int other = face_to_lie_on(shape, 0, point, outwards, kHalfWay * half_width(shape))) out.face = other;
@@ -161,26 +164,28 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   PointAction out;
   const FeltShape felt = felt_shape(whole, law, radius, motion, memory);
   const ContactShape& shape = felt.shape;
-  out.dissipated = felt.let_go + held_energy(law, memory);  // of a contact that has let go
+  // Energy stored at the beginning; what is stored at the end is subtracted below.
+  out.dissipated = felt.let_go + held_energy(law, memory);
   if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
   const double end_start = let_out(law, felt.start, motion.duration);
   ContactChange change{felt.radius - felt.start - gap.begin, felt.radius - end_start - gap.end,
                        motion.at_end ? 0.0 : motion.duration};
   const double inside = felt.face != 0 ? -gap.end : 0;
-  // Where it comes out a little it is felt from there on when it goes in again.
+  // If the point moves out a little, the offset decreases with it: forces begin there when it moves in again.
   out.memory.start = std::clamp(felt.radius - gap.end, 0.0, end_start);
   out.memory.face = change.end > 0 || ((felt.radius < 0 || end_start > 0) && inside > 0) ? felt.face : 0;
   if (out.memory.face != 0 && felt.radius < 0) out.memory.within = std::min(-felt.radius, inside);
   if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
-  // Beyond its depth the law means nothing, and updates are too small to tell: an equilibrium is to be looked for by
-  // shorter ways. In motion a step may be too long for a hit; what goes on from so deep is driven, and no force is
-  // enough.
+  // Near its depth the law is so steep that small updates do not mean convergence. In an equilibrium, NaN makes the
+  // solver use shorter load steps. In a motion, penetrations near the depth can occur when a step is too long for a
+  // hit. But if a point is there at the beginning and goes deeper, it is driven, and no force can stop it.
   const bool is_driven = change.begin >= kDeepestRest * law.depth && change.end >= law.depth;
   if ((motion.at_end && change.end >= kDeepestRest * law.depth) || is_driven) {
     out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
-    out.dissipated = std::numeric_limits<double>::quiet_NaN();  // told where nothing is free, too
+    // This reports the failure even if the nodes have no unknowns.
+    out.dissipated = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
   const double begin_rate =
@@ -209,7 +214,7 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
   if (penetration <= 0) return out;
   const double rate = let_out_rate(law, memory.start) - distance.gradient.dot(velocity);
   out.push = push_at(law, penetration, rate, approach_speed(penetration, rate, memory.speed));
-  // As a step would begin in which nothing moves.
+  // As in a step without motion.
   if (law.friction > 0)
     out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push).stretch;
   if (law.resists_turns())
@@ -218,15 +223,16 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
 }
 
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {
-  if (shape.is_hollow) return false;  // between two places in a hole there is nothing else
+  if (shape.is_hollow) return false;  // a hole is convex, so the way between two of its places is free
   const Vector3 way = to - from;
   const double length = way.norm();
-  // Distances of convex shapes are convex: lowest at an end unless they fall first and rise then.
+  // The distance from a convex shape is convex along the way. Its minimum is at an end, unless it first falls and then
+  // rises.
   if (shape.distance(from).gradient.dot(way) >= 0 || shape.distance(to).gradient.dot(way) <= 0) return false;
-  // No surface is nearer than the distance: the ball may go so far without a look.
+  // The ball can advance by its distance from the surface without touching it.
   double gone = shape.distance(from).value - radius;
   if (gone + shape.distance(to).value - radius >= length) return false;
-  constexpr double kLeast = 1e-4;  // of the way, per look
+  constexpr double kLeast = 1e-4;  // smallest advance, relative to the way
   while (gone < length) {
     const double gap = shape.distance(from + gone / length * way).value - radius;
     if (gap < -kGraze * std::abs(radius)) return true;

@@ -1,85 +1,85 @@
 #pragma once
-/// A point that touches a shape, as the shape sees it: all vectors have the axes of the body that the shape is fixed
-/// to. (docs/notes/contact.md)
+/// Contact of a ball (or a corner, with radius 0) with a shape. All vectors are in the frame of the body to which the
+/// shape is fixed. (docs/notes/contact.md)
 
 #include "contact/contact_law.h"
 #include "contact/shape.h"
 
 namespace flexarm {
 
-/// Change of a signed distance between two points: `gradient` times the way is exactly the change. It is Gonzalez'
-/// discrete gradient; at an instant the gradient at the end.
+/// The change of a signed distance between two points. `gradient` times the displacement is exactly the change: it is
+/// Gonzalez' discrete gradient. For forces at an instant it is the gradient at the end.
 struct GapChange {
-  double begin, end;  ///< [m], < 0 inside
+  double begin, end;  ///< distances, < 0 inside [m]
   Vector3 gradient;
-  Matrix3 slope;         ///< of the gradient, by the point at the end
-  Vector3 end_gradient;  ///< of the distance, at the end
+  Matrix3 slope;         ///< derivative of `gradient` with respect to the point at the end
+  Vector3 end_gradient;  ///< gradient of the distance at the end
 };
 GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vector3& to, bool at_end);
 
-/// Over a step.
+/// The motion of the ball relative to the shape over a step.
 struct PointMotion {
-  Vector3 begin, end;                        ///< where the middle of the point's ball is [m]
-  Vector3 turn;                              ///< of the ball less that of the shape's body, tangent-scaled, mean axes
-  Vector3 begin_velocity = Vector3::Zero();  ///< of that middle, at the beginning [m/s]
+  Vector3 begin, end;                        ///< positions of the ball's middle [m]
+  Vector3 turn;                              ///< rotation of the ball minus that of the body, tangent-scaled, mean axes
+  Vector3 begin_velocity = Vector3::Zero();  ///< of the ball's middle at the beginning [m/s]
   double duration = 0;                       ///< [s]; 0: an equilibrium
-  Matrix3 outwards = Matrix3::Zero();        ///< of a corner, see ContactPoint, at the beginning
-  bool at_end = false;                       ///< what acts at the end counts; else means, whose work is exact
+  Matrix3 outwards = Matrix3::Zero();        ///< for a corner, see ContactPoint; at the beginning
+  bool at_end = false;                       ///< forces are those at the end; else means over the step, with exact work
 };
-/// For each point and shape, zero where they do not touch.
+/// What the contact of one point and one shape remembers from step to step. All numbers are zero without contact.
 struct PointMemory {
   static constexpr int kSize = 10;
-  double speed = 0;  ///< see remembered_speed()
-  Vector3 stretch = Vector3::Zero();
-  int face = 0;                      ///< by which a corner has come in
-  double within = 0;                 ///< so far inside of that face nothing is felt yet [m]
-  double start = 0;                  ///< nor of what has started inside, see let_out() [m]
-  Vector3 turned = Vector3::Zero();  ///< see turn_grip() [rad]
+  double speed = 0;                   ///< see remembered_speed()
+  Vector3 stretch = Vector3::Zero();  ///< of friction, see ContactGrip [m]
+  int face = 0;                       ///< face by which a corner has entered; 0: none
+  double within = 0;                  ///< depth below that face from which on forces begin [m]
+  double start = 0;                   ///< offset of the penetration, see let_out() [m]
+  Vector3 turned = Vector3::Zero();   ///< stretch of the resistance to turning, see turn_grip() [rad]
 };
-/// On the ball: a force through its middle and a couple, conjugate to the way and to the turn. Not finite at an instant
-/// at which it is too deep inside.
+/// The forces on the ball: a force through its middle and a couple, conjugate to the displacement and to the rotation.
+/// The wrench is NaN at an instant with too deep a penetration.
 struct PointAction {
   Vector6 wrench = Vector6::Zero();
-  Matrix6 slope = Matrix6::Zero();  ///< by {end, turn}
+  Matrix6 slope = Matrix6::Zero();  ///< derivative with respect to {end, turn} of PointMotion
   PointMemory memory;               ///< at the end of the step
-  double dissipated = 0;            ///< [J]
-  double work = 0;                  ///< that letting out has done [J]
-  bool acts = false;
+  double dissipated = 0;            ///< over the step [J]
+  double work = 0;                  ///< done by the decay of the offset, see let_out() [J]
+  bool acts = false;                ///< the ball and the shape touch in the step
 };
-/// `radius`: of the ball [m].
+/// Computes the forces. `whole`: the shape with all its faces; `radius`: of the ball [m].
 PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
                          const PointMemory& memory, bool with_slope);
 
-/// What acts on the ball at an instant, where its surface touches.
+/// The forces on the ball at an instant, at the point of its surface that touches.
 struct PointTouch {
-  double gap = 0;   ///< < 0 inside [m]
-  Vector3 normal;   ///< unit, outwards
-  double push = 0;  ///< along it [N]
-  Vector3 friction = Vector3::Zero(), couple = Vector3::Zero();
+  double gap = 0;                                                ///< < 0 inside [m]
+  Vector3 normal;                                                ///< unit vector, outwards from the shape
+  double push = 0;                                               ///< along the normal [N]
+  Vector3 friction = Vector3::Zero(), couple = Vector3::Zero();  ///< [N, N m]
 };
-/// `point`, `velocity`: of the ball's middle; `memory`: as the last step has left it.
+/// Computes the forces at an instant. `point`, `velocity`: of the ball's middle; `memory`: at the end of the last step.
 PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double radius, const Vector3& point,
                        const Vector3& velocity, const PointMemory& memory);
 
-/// What a point feels of a shape over a step: all of it, or what is beyond one face.
+/// The shape that acts on a point over a step: the whole shape, or the half-space below one face.
 struct FeltShape {
   ContactShape shape;
-  int face = 0;
-  double radius = 0;    ///< from which on it is felt: of a corner that came in beside its face < 0 [m]
-  double start = 0;     ///< less this, of what has started inside [m]
-  bool is_felt = true;  ///< false: it cannot touch
-  double let_go = 0;    ///< what was stored and is lost, since the point has come beside the face that it was in [J]
+  int face = 0;         ///< 0: the whole shape
+  double radius = 0;    ///< forces begin at this distance, minus `start`; < 0 with PointMemory::within [m]
+  double start = 0;     ///< offset of the penetration, see let_out() [m]
+  bool is_felt = true;  ///< false: they cannot touch in this step
+  double let_go = 0;    ///< stored energy that is lost because the point has left its face sideways [J]
 };
 FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
                      const PointMemory& memory);
-/// Of a point that has got inside without a motion.
+/// Returns the memory of a point that is inside the shape in an initial state.
 PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                          const Matrix3& outwards);
-/// What is stored [J].
+/// Returns the stored energy [J].
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory);
 
-/// True where a ball that goes straight from one point to another, and touches at neither, meets the shape in between.
+/// Whether a ball that moves straight from one point to another, and touches at neither, hits the shape in between.
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius);
 
 }  // namespace flexarm

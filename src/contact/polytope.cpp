@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// Calls visit(corner, next corner) round a face, until it returns false.
+/// Calls visit(corner, next corner) around a face, until it returns false. Returns whether it never did.
 template <class Visit>
 bool all_sides(const Polytope& polytope, const Polytope::Face& face, const Visit& visit) {
   for (std::size_t i = 0; i < face.corners.size(); ++i)
@@ -37,7 +37,7 @@ NearestPoint nearest_point(const Polytope& polytope, const Vector3& outside) {
   double least = std::numeric_limits<double>::infinity();
   for (const Polytope::Face& face : polytope.faces) {
     const double height = height_over(face, outside);
-    if (height <= 0) continue;  // it cannot be seen from there
+    if (height <= 0) continue;  // the face is turned away from the point
     if (is_over(polytope, face, outside, 0)) return {outside - height * face.normal, 2, Vector3::Zero()};
     all_sides(polytope, face, [&](const Vector3& begin, const Vector3& end) {
       const NearestPoint each = nearest_on_side(begin, end, outside);

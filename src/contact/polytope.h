@@ -1,5 +1,5 @@
 #pragma once
-/// A convex body bounded by planes.
+/// A convex polyhedron.
 
 #include <vector>
 
@@ -9,31 +9,31 @@ namespace flexarm {
 
 struct Polytope {
   struct Face {
-    Vector3 normal;            ///< outwards, unit
-    double offset;             ///< normal . x on it [m]
-    std::vector<int> corners;  ///< round it, counterclockwise as seen from outside
+    Vector3 normal;            ///< unit vector, outwards
+    double offset;             ///< normal . x for points x on the face [m]
+    std::vector<int> corners;  ///< indices around the face, counterclockwise as seen from outside
   };
   std::vector<Vector3> corners;  ///< [m]
   std::vector<Face> faces;
 };
 
-/// Signed distance of a point from a face's plane [m].
+/// Returns the signed distance of a point from a face's plane, > 0 outside [m].
 inline double height_over(const Polytope::Face& face, const Vector3& point) {
   return face.normal.dot(point) - face.offset;
 }
-/// Whether a point lies above or below a face, not beside it by more than `slack` [m].
+/// Whether the projection of a point onto a face's plane lies in the face, or beside it by at most `slack` [m].
 bool is_over(const Polytope& polytope, const Polytope::Face& face, const Vector3& point, double slack);
 
-/// Of the surface: the point nearest to one outside, and what it lies on.
+/// The point of the surface that is nearest to a point outside, and whether it is on a face, an edge or a corner.
 struct NearestPoint {
   Vector3 position;
-  /// 2, 1 or 0 of faces, edges and corners: ways along which the nearest point goes with the outer one.
+  /// 2: on a face, 1: on an edge, 0: a corner. This is the number of directions in which the nearest point can move.
   int dimensions;
-  Vector3 along;  ///< of an edge: its unit direction
+  Vector3 along;  ///< on an edge: its unit direction; else zero
 };
 NearestPoint nearest_point(const Polytope& polytope, const Vector3& outside);
 
-/// Half of how thick it is: of the corners' middle, how far inside it is [m].
+/// Returns about half of the polytope's thickness: the distance of the corners' mean from the nearest face [m].
 double inner_radius(const Polytope& polytope);
 
 }  // namespace flexarm

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-/// Of the norm of a vector. Where it vanishes, `otherwise` is as good a direction as any.
+/// The norm of a vector, with its derivatives. If the vector is zero, the gradient is `otherwise`.
 SignedDistance norm(const Vector3& vector, const Vector3& otherwise) {
   SignedDistance out;
   out.value = vector.norm();
@@ -25,14 +25,15 @@ SignedDistance norm(const Vector3& vector, const Vector3& otherwise) {
   return out;
 }
 
-/// Of the corner region x, y, z < 0 of axes along `axes`, from the distances of its faces.
+/// The signed distance of the octant x, y, z < 0 of axes along the columns of `axes`. `faces`: signed distances from
+/// its three faces.
 SignedDistance corner(const Vector3& faces, const Matrix3& axes) {
   Eigen::Index nearest;
   const double highest = faces.maxCoeff(&nearest);
   if (highest <= 0) return {highest, axes.col(nearest), Matrix3::Zero()};
   const Vector3 outside = faces.cwiseMax(0.0);
   const SignedDistance local = norm(outside, Vector3::UnitZ());
-  // Along faces that the point is inside of, nothing changes.
+  // Motions normal to faces that the point is inside of do not change the distance.
   const Vector3 counts = (faces.array() > 0).cast<double>();
   const Matrix3 hessian = counts.asDiagonal() * local.hessian * counts.asDiagonal();
   return {local.value, axes * local.gradient, axes * hessian * axes.transpose()};
@@ -60,7 +61,7 @@ SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
   const double face = radial.value - cylinder.radius;
   SignedDistance out =
       corner({face, -std::numeric_limits<double>::infinity(), std::abs(y.z()) - cylinder.half_length}, axes);
-  // The radial axis turns with the point.
+  // The radial direction rotates as the point moves.
   const double radial_part = out.gradient.dot(radial.gradient);
   Matrix3 in_section = radial.hessian;
   in_section.row(2).setZero(), in_section.col(2).setZero();
@@ -68,7 +69,7 @@ SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
   return out;
 }
 
-/// The face whose plane a point is the farthest above [m].
+/// The face with the largest signed distance from a point, and this distance [m].
 struct HighestFace {
   const Polytope::Face* face;
   double height;
@@ -90,14 +91,15 @@ SignedDistance distance_of(const Hull& hull, const Vector3& y) {
   return out;
 }
 
-/// See corner().
+/// The value of corner(), without derivatives.
 template <class Faces>
 double corner_gap(const Faces& faces) {
   const double highest = faces.maxCoeff();
   return highest <= 0 ? highest : faces.cwiseMax(0.0).norm();
 }
 
-// Signed distances alone; of a hull less than them outside, beside its faces.
+// gap_of() returns signed distances without derivatives. Outside a hull, beside its faces, it returns less than the
+// distance.
 double gap_of(const HalfSpace&, const Vector3& y) {
   return y.z();
 }
@@ -114,7 +116,7 @@ double gap_of(const Hull& hull, const Vector3& y) {
   return highest_face(hull, y).height;
 }
 
-/// Appends those between both ends of an edge.
+/// Appends contact points between both ends of an edge.
 void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, const Matrix3& outwards,
                      std::vector<ContactPoint>& points) {
   const int spans = static_cast<int>(std::min(std::ceil((end - begin).norm() / spacing), kMostEdgePoints + 1.0));
@@ -134,7 +136,7 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
     const Matrix3 outwards = corner.cwiseSign().asDiagonal();
     out.push_back({corner, 0, outwards});
     for (int axis = 0; axis < 3; ++axis) {
-      if (k & (1 << axis)) continue;  // edges begin at their lower ends
+      if (k & (1 << axis)) continue;  // each edge is added at its lower end
       Matrix3 beside = outwards;
       beside.col(axis).setZero();
       add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, beside, out);
@@ -142,7 +144,8 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
   }
   return out;
 }
-/// Of faces that meet: their normals; of more than three the mean.
+/// Returns the normals of the faces that meet in a corner or edge as columns. If there are more than three, returns
+/// their mean direction as the only column.
 Matrix3 outwards_of(const std::vector<Vector3>& normals) {
   Matrix3 out = Matrix3::Zero();
   if (normals.size() <= 3)
@@ -155,7 +158,7 @@ Matrix3 outwards_of(const std::vector<Vector3>& normals) {
 std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
   const std::vector<Vector3>& corners = hull.polytope->corners;
   std::vector<std::vector<Vector3>> at_corners(corners.size());
-  std::map<std::pair<int, int>, std::vector<Vector3>> at_edges;  // each of both faces
+  std::map<std::pair<int, int>, std::vector<Vector3>> at_edges;  // by edge: the normals of its two faces
   for (const Polytope::Face& face : hull.polytope->faces)
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
       const int begin = face.corners[i], end = face.corners[(i + 1) % face.corners.size()];
@@ -179,7 +182,7 @@ std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing) {
       outwards(2, 2) = z < 0 ? -1 : 1;
       out.push_back({cylinder.radius * radial + Vector3(0, 0, z), 0, outwards});
     }
-  // Its side: balls that fill it.
+  // For the side: balls along the axis with the cylinder's radius.
   const double end = cylinder.half_length - cylinder.radius;
   if (end <= 0) return out;
   const int spans = std::max(1, static_cast<int>(std::min(std::ceil(2 * end / spacing), kMostEdgePoints + 1.0)));

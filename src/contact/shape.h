@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid shapes that may be touched: how far points are from them.
+/// Rigid shapes for contact: distances of points from them, their faces, and the points with which they touch others.
 
 #include <memory>
 #include <variant>
@@ -9,23 +9,25 @@
 
 namespace flexarm {
 
-/// Of a point from a surface [m], < 0 inside, with its first and second derivative by the point. The gradient is the
-/// unit normal, outwards; on edges, on axes and in centres one of those that there are.
+/// The signed distance of a point from a surface (< 0 inside) [m], with its first and second derivatives with respect
+/// to the point. The gradient is the outward unit normal. On edges, on axes and in centres it is one of the possible
+/// normals.
 struct SignedDistance {
   double value = 0;
   Vector3 gradient = Vector3::UnitZ();
   Matrix3 hessian = Matrix3::Zero();
 };
 
-/// Shapes in their own frames.
-struct HalfSpace {};  ///< below z = 0
+// Shapes in their own frames:
+
+struct HalfSpace {};  ///< z < 0
 struct Ball {
   double radius = 0;  ///< [m]
 };
 struct Box {
-  Vector3 half = Vector3::Zero();  ///< [m]
+  Vector3 half = Vector3::Zero();  ///< half edge lengths [m]
 };
-/// Along z.
+/// A cylinder with its axis along z.
 struct Cylinder {
   double radius = 0, half_length = 0;  ///< [m]
 };
@@ -39,49 +41,52 @@ struct Hull {
 struct ContactShape {
   std::variant<HalfSpace, Ball, Box, Cylinder, Hull> kind;
   Pose place;              ///< in the node's frame
-  bool is_hollow = false;  ///< turned inside out: all but the shape is solid, which is a hole without faces
+  bool is_hollow = false;  ///< inverted: the shape is a hole, and everything around it is solid; has no faces
 
   /// `point`: in the node's frame [m].
   SignedDistance distance(const Vector3& point) const;
-  /// Nothing of the surface is nearer [m]. Inside it is the distance, and of shapes without edges outside as well.
+  /// Returns a lower bound of the signed distance [m]. Inside the shape it is exact; outside it is exact except beside
+  /// the faces of a hull.
   double gap(const Vector3& point) const;
 };
 
-/// Faces of boxes, cylinders and hulls have numbers from 1 on: of a box +x, -x, +y, -y, +z, -z; of a cylinder its side,
-/// +z, -z; 0: none. A corner that has come in by a face is pushed out by it, however near others are: corners of equal
-/// boxes on each other lie on edges.
+/// Whether a shape has faces: boxes, cylinders and hulls have. They are numbered from 1: of a box +x, -x, +y, -y, +z,
+/// -z; of a cylinder its side, +z, -z; 0 means no face. A corner that has entered by a face is pushed out by that face,
+/// however near other faces are. This matters if equal boxes lie on each other, since then corners are at edges.
 bool has_faces(const ContactShape& shape);
-/// By which a point comes in that goes straight from outside to another place; 0: it does not.
+/// Returns the face by which a point enters that moves straight from outside to another place; 0 if it does not enter.
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to);
+/// Returns the face with the largest signed distance from the point, which is the nearest one if the point is inside.
 int nearest_face(const ContactShape& shape, const Vector3& point);
-/// That one of the faces besides `crossed` which a corner or an edge at `point` can lie on, no farther from it than
-/// `deepest` [m], the nearest of them; 0: none. `outwards`: normals of the other body's faces that meet there, in this
-/// one's node's frame.
+/// Returns the nearest face other than `crossed` that a corner or an edge at `point` can lie on, at most `deepest` away
+/// [m]; 0 if there is none. `outwards`: normals of the other body's faces that meet in the corner or edge, in the frame
+/// of this shape's node.
 int face_to_lie_on(const ContactShape& shape, int crossed, const Vector3& point, const Matrix3& outwards,
                    double deepest);
-/// Whether a corner or an edge can lie on a face: what is pushed out by it is on the other body's side of it.
+/// Whether a corner or an edge can lie on a face: the normals of the other body's faces there (`outwards`) point
+/// towards this face, so the other body is outside of it.
 bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards);
-/// Whether a point lies above or below a face, not beside it.
+/// Whether the projection of a point onto a face lies in the face.
 bool is_over_face(const ContactShape& shape, int face, const Vector3& point);
-/// What a face bounds, as if there were no others: a half-space, or an endless cylinder.
+/// Returns the shape that the face would bound if there were no other faces: a half-space, or an infinite cylinder.
 ContactShape beyond_face(const ContactShape& shape, int face);
 
-/// Half of the least width [m]; infinite of a half-space.
+/// Returns half of the shape's smallest width [m]; infinity for a half-space.
 double half_width(const ContactShape& shape);
 
-/// A ball around a point fixed to a node by which a shape touches others: a corner, or the centre of a round one.
+/// A ball, fixed to a node, with which a shape touches others. Its radius is 0 for corners and points on edges.
 struct ContactPoint {
-  Vector3 arm = Vector3::Zero();       ///< in the node's frame [m]
+  Vector3 arm = Vector3::Zero();       ///< the ball's middle in the node's frame [m]
   double radius = 0;                   ///< [m]
   Matrix3 outwards = Matrix3::Zero();  ///< columns: normals of the faces that meet there, in the node's frame
 };
-/// Those of a shape: a ball's middle; corners of a box or a hull, and points on their edges not much farther from each
-/// other than `spacing` [m]; `kRimPoints` on each rim of a cylinder, and balls along its axis that fill it, if it is
-/// longer than wide. None of a half-space or a hole, which touch nothing themselves.
+/// Returns the contact points of a shape. A ball: itself. A box or hull: its corners, and points on its edges about
+/// `spacing` apart [m], at most kMostEdgePoints on each. A cylinder: kRimPoints on each rim; if it is longer than wide,
+/// also balls along its axis that fill it. A half-space or a hole: none.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
-/// How many of these points of a shape touch a plane at a time that it lies on: those of the flat face that has most of
-/// them; without faces 1.
+/// Returns how many of these points touch a plane on which the shape lies: the largest number on one flat face; 1 if
+/// the shape has no faces.
 int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points);
 
 }  // namespace flexarm

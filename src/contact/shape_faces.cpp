@@ -1,4 +1,4 @@
-// Faces of shapes: by which a point comes in, and on which it can lie.
+// Faces of shapes: by which face a point enters, and on which face it can lie.
 #include <algorithm>
 #include <limits>
 
@@ -7,19 +7,19 @@
 namespace flexarm {
 namespace {
 
-/// Turns z into a unit vector.
+/// Returns a rotation that turns the z axis into `normal`.
 Quaternion from_z_to(const Vector3& normal) {
   if (normal.z() < -0.5) return Quaternion(0, 1, 0, 0) * from_z_to({normal.x(), -normal.y(), -normal.z()});
   return Quaternion(1 + normal.z(), -normal.y(), normal.x(), 0).normalized();
 }
 
-/// A point may be beside a face by this part of its shape's size, and still be over it: round-off.
+/// A point counts as over a face if it is beside it by at most this, relative to the shape's size (round-off).
 constexpr double kBeside = 1e-9;
-/// A point that starts so little inside of a face, of the size, may come in by it: corners of equal boxes that a scene
-/// lays on each other are inside of several.
+/// A point that starts below a face by at most this, relative to the shape's size, may still enter by that face. If a
+/// scene puts equal boxes on each other, corners are slightly below several faces.
 constexpr double kFlush = 1e-3;
-/// Cosines of a face's normal to those of the faces that meet in a corner that lies on it: not above the first, and one
-/// of them below the second.
+/// A corner can lie on a face if the cosines between the face's normal and the normals of the faces that meet in the
+/// corner are all at most kAside, and at least one is at most kOpposite.
 constexpr double kAside = 0.2, kOpposite = -0.5;
 
 int face_count(const Box&) {
@@ -89,7 +89,7 @@ Vector3 own_point(const ContactShape& shape, const Vector3& point) {
   return shape.place.orientation.conjugate() * (point - shape.place.position);
 }
 
-/// Calls visit(shape) with one that has faces; `otherwise` of one that has none.
+/// Returns visit(box, cylinder or hull) for a shape with faces; `otherwise` for other shapes.
 template <class Result, class Visit>
 Result of_faces(const ContactShape& shape, Result otherwise, const Visit& visit) {
   if (const auto* box = std::get_if<Box>(&shape.kind)) return visit(*box);
@@ -98,7 +98,7 @@ Result of_faces(const ContactShape& shape, Result otherwise, const Visit& visit)
   return otherwise;
 }
 
-/// The face by which a point comes in, from 0 on, and in which part of its way; -1: it does not.
+/// The face by which a point enters, numbered from 0 (-1: it does not enter), and the part of its way at which it does.
 struct Entry {
   int face;
   double part;
@@ -106,14 +106,14 @@ struct Entry {
 template <class Shape>
 Entry entry_into(const Shape& shape, const Vector3& begin, const Vector3& end) {
   const double size = size_of(shape), slack = kBeside * size;
-  Entry entry{-1, -1};  // the last of the faces that it comes through
+  Entry entry{-1, -1};  // the last face plane that the point crosses
   double lowest = 0;
   for (int k = 0; k < face_count(shape); ++k) {
     const double a = height_over(shape, k, begin);
     if (a < -kFlush * size) continue;
     const double b = height_over(shape, k, end);
     if (a > slack && b >= a) return {-1, 0};
-    // Where it starts on several faces it comes in by the one towards which it moves.
+    // If the point starts on several faces, it enters by the one below which it ends deepest.
     const double part = a > slack ? a / (a - b) : 0;
     if (part < entry.part || (part == entry.part && b >= lowest)) continue;
     entry = {k, part};

@@ -6,11 +6,12 @@
 namespace flexarm {
 namespace {
 
-/// Linearisation of a stiffness point in the coordinates (r', theta', theta).
+/// Tangent of a stiffness point in the coordinates (r', theta', theta).
 using PointMatrix = Eigen::Matrix<double, 9, 9>;
 
-/// d{n, T^T m, T'^T m - T^T (r' x n)}: the material part and the geometric part G (beam.md 2.2).
-/// `n`, `m`: resultants in space; `theta`, `slope`: the interpolated total rotation vector and its derivative.
+/// Returns d{n, T^T m, T'^T m - T^T (r' x n)}, the sum of the material part and the geometric part G (beam.md 2.2).
+/// `n`, `m`: stress resultants in world axes; `theta`, `slope`: the interpolated total rotation vector and its
+/// derivative.
 PointMatrix point_tangent(const PointKinematics& point, const Matrix6& stiffness, const Vector3& n, const Vector3& m,
                           const Vector3& theta, const Vector3& slope) {
   const so3::ExponentialMap<double> map(theta);
@@ -33,7 +34,7 @@ PointMatrix point_tangent(const PointKinematics& point, const Matrix6& stiffness
   return K;
 }
 
-/// Adds weight B^T K B, B: (r', theta', theta) from the nodal {r_j, theta_j}.
+/// Adds weight B^T K B. B maps the nodal {r_j, theta_j} to (r', theta', theta).
 template <int Nodes>
 void add_point_tangent(double weight, const PointMatrix& K, const NodalValues<Nodes>& shape,
                        const NodalValues<Nodes>& derivative, Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>& tangent) {
@@ -107,7 +108,7 @@ void additive_to_spins(const ElementNodes<Nodes>& nodes, bool with_tangent, Elem
   }
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes)                                                            \
   template decltype(AdditiveForm::add_point<Nodes>) AdditiveForm::add_point<Nodes>;   \
   template decltype(add_additive_rotary_rate<Nodes>) add_additive_rotary_rate<Nodes>; \

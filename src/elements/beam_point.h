@@ -1,6 +1,11 @@
 #pragma once
-/// Shared by all beam kernels: the nodes of an element over a step, strains at a point, and how the linearised internal
-/// forces of a point are added to the element's residual and tangent.
+/// What all beam kernels share: the nodes of an element over a step, strains at an integration point, and functions
+/// that add the internal forces of a point and their linearisation to the element's residual and tangent.
+///
+/// Notation of the beam kernels (docs/notes/beam.md): s arc length of the undeformed line, ' derivative with respect to
+/// s; r position, Lambda rotation matrix from section to world axes; {Gamma, K} strains (axial and shear; torsion and
+/// bending) and {N, M} their stress resultants in section axes; n, m the same in world axes; I^i shape function of node
+/// i; spin: infinitesimal rotation vector in world axes, d(Lambda) = hat(spin) Lambda.
 
 #include <array>
 #include <optional>
@@ -15,7 +20,7 @@ namespace flexarm {
 /// Kinematics of a stiffness point at one instant.
 template <typename S>
 struct PointKinematicsT {
-  Matrix3T<S> rotation;  ///< Lambda
+  Matrix3T<S> rotation;  ///< Lambda, from section to world axes
   Vector3T<S> tangent;   ///< r' = dr/ds
   Vector6T<S> strain;    ///< {Gamma, K}
 };
@@ -29,8 +34,8 @@ struct ElementNodes {
   std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector3, Nodes> velocity, acceleration;     ///< at the beginning [m/s, m/s^2]
-  Vector6 prestrain = Vector6::Zero();                   ///< that strains of the step are measured from
-  /// Of the interpolations that measure rotations from a reference; the local one has none.
+  Vector6 prestrain = Vector6::Zero();                   ///< subtracted from the strains
+  // For interpolations that measure rotations from a reference (all but the local one):
   std::array<Vector3, Nodes> rotation_vector;
   RotationParameters parameters = RotationParameters::Unscaled;
   const InterpolatedRotation<double>* stiffness_reference = nullptr;  ///< per stiffness point of the element
@@ -41,7 +46,7 @@ struct ElementNodes {
 template <int Nodes>
 struct ElementSystem {
   Eigen::Matrix<double, 6 * Nodes, 1> residual;
-  Eigen::Matrix<double, 6 * Nodes, 1> carried;  ///< what carried strains would add to it
+  Eigen::Matrix<double, 6 * Nodes, 1> carried;  ///< residual with carried strains minus `residual`; see carry_strains()
   Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> tangent;
   double dissipated = 0;  ///< over the step [J]
 
@@ -53,12 +58,12 @@ struct ElementSystem {
   }
 };
 
-/// Interpolated rotations of an element, with their variation only where it is wanted. `Nodes`: 2 to 5.
+/// Interpolates rotations of an element, and their variation on request. `Nodes`: 2 to 5.
 template <int Nodes>
 class ElementRotations {
  public:
   ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation);
-  /// `reference` is used by the interpolations that have one.
+  /// `reference`: only for interpolations that have one. `generalised`: output, set only with variation.
   InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
                                         const InterpolatedRotation<double>* reference,
                                         GeneralisedShapeFunctions<Nodes>& generalised) const;
@@ -69,8 +74,9 @@ class ElementRotations {
   std::optional<ReferencedRotations<Nodes>> referenced_;
 };
 
-/// What the strains at an element's stiffness points become along a Newton update {dr, spin} of its nodes, to first
-/// order (docs/notes/newton.md).
+/// Computes carried strains: the strains at an element's stiffness points after an update {dr, spin} of its nodes, to
+/// first order. The geometric part of the next tangent uses them in place of the strains of the new configuration,
+/// which contain spurious terms of second order (docs/notes/newton.md).
 template <int Nodes>
 void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
                    const std::array<Vector6, Nodes>& update, Vector6* strains);
@@ -96,7 +102,7 @@ PointKinematicsT<S> point_kinematics(const InterpolatedRotation<S>& interpolated
   return point;
 }
 
-/// A stiffness point at the end of a step, its rotation interpolated.
+/// Returns a stiffness point at the end of a step. `rotation`: the interpolated one.
 template <int Nodes>
 PointKinematics end_kinematics(const typename BeamElement<Nodes>::StiffnessPoint& constants,
                                const ElementNodes<Nodes>& nodes, const InterpolatedRotation<double>& rotation) {
@@ -106,7 +112,7 @@ PointKinematics end_kinematics(const typename BeamElement<Nodes>::StiffnessPoint
   return point;
 }
 
-/// d{Gamma, K} at an instant, columns {dr', spin, spin'} (beam.md 3.2).
+/// Returns the derivative of {Gamma, K} at an instant; columns {dr', spin, spin'} (beam.md 3.2).
 inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& point) {
   const Matrix3 transposed = point.rotation.transpose();
   Eigen::Matrix<double, 6, 9> d = Eigen::Matrix<double, 6, 9>::Zero();
@@ -116,7 +122,7 @@ inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& poin
   return d;
 }
 
-/// Test functions of the moment rows at a point: the Lagrange functions themselves ...
+/// Lagrange functions as test functions of the moment rows at a point.
 template <int Nodes>
 struct LagrangeTests {
   const NodalValues<Nodes>& shape;
@@ -130,7 +136,7 @@ struct LagrangeTests {
     return slope[i] * rows;
   }
 };
-/// ... or generalised shape functions, transposed.
+/// Transposed generalised shape functions as test functions of the moment rows at a point.
 template <int Nodes>
 struct GeneralisedTests {
   const GeneralisedShapeFunctions<Nodes>& functions;
@@ -156,14 +162,14 @@ void add_point_residual(double weight, const NodalValues<Nodes>& derivative, con
   }
 }
 
-/// How the columns {dr', spin, spin'} of a point depend on the nodes' {dr_j, spin_j}: spin = sum values[j] spin_j, ...
+/// Maps the nodes' {dr_j, spin_j} to {dr', spin, spin'} of a point.
 template <int Nodes>
 struct PointVariation {
   const NodalValues<Nodes>& derivative;           ///< dr' = sum derivative[j] dr_j
-  const GeneralisedShapeFunctions<Nodes>& spins;  ///< of spin, spin'
+  const GeneralisedShapeFunctions<Nodes>& spins;  ///< spin = sum values[j] spin_j, spin' = sum derivatives[j] spin_j
 };
 
-/// The linearisation of a point with respect to node j's {dr_j, spin_j}.
+/// Returns the columns of a point's linearisation with respect to node j's {dr_j, spin_j}.
 template <int Nodes, int Rows>
 Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, 9>& point,
                                             const PointVariation<Nodes>& variation, int j) {
@@ -175,7 +181,8 @@ Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, 9>
   return columns;
 }
 
-/// Adds the tangent of add_point_residual. `resultants` is d{n, m}, `couple` d(arm x n), columns {dr', spin, spin'}.
+/// Adds the tangent of add_point_residual(). `resultants` is d{n, m}, `couple` d(arm x n), both with columns
+/// {dr', spin, spin'}.
 template <int Nodes, class Tests>
 void add_point_tangent(double weight, const Tests& tests, const PointVariation<Nodes>& variation,
                        const Eigen::Matrix<double, 6, 9>& resultants, const Eigen::Matrix<double, 3, 9>& couple,

@@ -2,11 +2,12 @@
 /// Beams over a step for the energy-momentum (EM) family (beam.md 3.2, beyond.md 1):
 ///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_arm x n} ds,  n = Lambda_bar N_a,  m = Lambda_bar M_a.
 /// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_arm suits the
-/// rule of the velocities.
+/// rule of the velocities. The conjugate strain s of a step approximates the change of strain; the stresses do the work
+/// of the nodal forces on it.
 ///
-/// Templates on their numbers; those of four elements side by side (S = Pack) are what runs (conserving_pack.h). A step
-/// goes by stages, which are compiled each by itself: set_points() here, set_strains() and set_forces()
-/// (conserving_terms.h), add_tangent() (conserving_tangent.h).
+/// The functions are templates on the number type S. Simulations use packs of four elements side by side (S = Pack,
+/// conserving_pack.h). The stages of a step are compiled in separate units: set_points() (here), set_strains() and
+/// set_forces() (conserving_terms.h), add_tangent() (conserving_tangent.h).
 
 #include "elements/beam_point.h"
 #include "elements/conserving_terms.h"
@@ -16,7 +17,7 @@
 
 namespace flexarm::conserving {
 
-/// m hat(v).
+/// Returns m hat(v).
 template <typename S>
 Matrix3T<S> times_hat(const Matrix3T<S>& m, const Vector3T<S>& v) {
   Matrix3T<S> product;
@@ -26,7 +27,7 @@ Matrix3T<S> times_hat(const Matrix3T<S>& m, const Vector3T<S>& v) {
   return product;
 }
 
-/// hat(v) m.
+/// Returns hat(v) m.
 template <typename S>
 Matrix3T<S> hat_times(const Vector3T<S>& v, const Matrix3T<S>& m) {
   Matrix3T<S> product;
@@ -42,25 +43,25 @@ struct Point {
   Vector3T<S> end_tangent, arm;                     // r'_{n+1}, (r'_n + r'_{n+1}) / 2
   Vector3T<S> increment, increment_derivative;      // interpolated w and w'
   Vector3T<S> stretch;                              // x = Delta r' + arm x w
-  PointStress<S> own, seen;                         // of the trial configuration, and of what is carried
+  PointStress<S> own, seen;                         // of the trial configuration; for the geometric part of the tangent
   Vector6T<S> half_defect_stress;                   // C (Delta Sigma - s) / 2
-  // What the forces leave for the tangent.
-  Vector6T<S> seen_resultants;  // weighted, with dampers; by the geometric part
-  S factor, damped_factor;      // of s in the stress: of C s, and of D C D s
+  // Set by set_forces() for add_tangent():
+  Vector6T<S> seen_resultants;  // for the geometric part; weighted, including dampers
+  S factor, damped_factor;      // the stress contains factor C s + damped_factor D C D s
 };
 
 /// All stiffness points of an element over a step, at the trial configuration.
 template <int Nodes, typename S>
 struct StepPoints {
   std::array<Point<Nodes, S>, Nodes - 1> points;
-  ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
-  const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
+  ElementFunctions<Nodes, S> averages;    // for MidFunctions::Symmetric
+  const ElementFunctions<Nodes, S>* mid;  // generalised shape functions for about the middle of the step
 
   StepPoints() = default;
   StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
 };
 
-/// The averages of begin and end, and the conjugate strain s, of the point k.
+/// Sets the averages of begin and end, and the conjugate strain s, at the point k.
 template <int Nodes, typename S>
 void set_point_strains(const ConservingElement<Nodes, S>& element, int k, const BeamNodes<Nodes, S>& nodes,
                        const PointKinematicsT<S>& begin, const PointKinematicsT<S>& end, StepPoints<Nodes, S>& at) {
@@ -89,7 +90,7 @@ struct PointVariation {
   Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
 };
 
-/// A linear form of it.
+/// A linear form of a PointVariation: the coefficients of its components.
 template <typename S>
 struct PointForm {
   Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
@@ -102,7 +103,7 @@ S value_of(const PointForm<S>& form, const PointVariation<S>& v) {
          so3::dot(form.increment_derivative, v.increment_derivative);
 }
 
-/// What a variation makes of the strain at the end and of the conjugate strain s.
+/// The changes of the strain at the end and of the conjugate strain s by a variation.
 template <typename S>
 struct StrainSlopes {
   Vector6T<S> end, conjugate;
@@ -122,7 +123,7 @@ StrainSlopes<S> strain_slopes(const Point<Nodes, S>& p, const PointVariation<S>&
   return slopes;
 }
 
-/// sum_i functions_i values_i.
+/// Returns sum_i functions_i values_i.
 template <int Nodes, typename S>
 Vector3T<S> sum_of(const std::array<Matrix3T<S>, Nodes>& functions, const std::array<Vector3T<S>, Nodes>& values) {
   Vector3T<S> sum = functions[0] * values[0];
@@ -130,7 +131,7 @@ Vector3T<S> sum_of(const std::array<Matrix3T<S>, Nodes>& functions, const std::a
   return sum;
 }
 
-/// The form `conjugate`.ds + `end`.d(strain at the end) (beyond.md 1.3).
+/// Returns the linear form `conjugate` . ds + `end` . d(strain at the end) (beyond.md 1.3).
 template <int Nodes, typename S>
 PointForm<S> strain_form(const Point<Nodes, S>& p, const Vector6T<S>& conjugate, const Vector6T<S>& end) {
   const Matrix3T<S>& average = p.average_rotation;
@@ -149,8 +150,8 @@ PointForm<S> strain_form(const Point<Nodes, S>& p, const Vector6T<S>& conjugate,
   return form;
 }
 
-/// Adds {I^i' n, I_t^i' m - I_t^i (arm x n)} of the point k to the residual. The test functions sum to I, their
-/// derivatives to 0: the last node takes what the others leave. `resultants`: weighted {N, M}.
+/// Adds {I^i' n, I_t^i' m - I_t^i (arm x n)} of the point k to the residual. The moment rows of the last node follow
+/// from the others, since the test functions sum to I and their derivatives to 0. `resultants`: weighted {N, M}.
 template <int Nodes, typename S, class Rows>
 void add_resultants(const ConservingElement<Nodes, S>& element, int k, const StepPoints<Nodes, S>& at,
                     const Vector6T<S>& resultants, Rows& residual) {
@@ -175,7 +176,7 @@ void add_resultants(const ConservingElement<Nodes, S>& element, int k, const Ste
 
 namespace flexarm {
 
-/// Rotations at the stiffness points; an element of two nodes has its only one half-way between them.
+/// Returns the rotations at the stiffness points. An element of two nodes has one point, half-way between the nodes.
 template <int Nodes, typename S>
 std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
                                                                const LocalRotations<Nodes, S>& local) {
@@ -188,7 +189,7 @@ std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingE
   }
   return rotations;
 }
-/// The same with `functions(k)`, the generalised shape functions at the point k.
+/// The same; also sets `functions(k)`, the generalised shape functions at the point k.
 template <int Nodes, typename S, class Functions>
 std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
                                                                const LocalRotations<Nodes, S>& local,
@@ -204,8 +205,8 @@ std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingE
   return rotations;
 }
 
-/// Generalised shape functions for the middle of a step from `orientation` by the `foreseen` tangent-scaled increments:
-/// those of the configuration half-way.
+/// Computes the generalised shape functions for the middle of a step: those of the configuration half-way between
+/// `orientation` and the end that the predicted tangent-scaled increments `foreseen` lead to.
 template <int Nodes, typename S>
 void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
                    const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
@@ -215,9 +216,10 @@ void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<
       element, LocalRotations<Nodes, S>(half_way), [&](int k) -> auto& { return functions[k]; });
 }
 
-/// The stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the mean of the `foreseen` increments: values
-/// P^-1 I_g P and derivatives P I_g' P. With it the conjugate strain of a step that turns the element by any angle is
-/// exact to first order in what else it does, and the energy multiplier has little to make up for (beyond.md 1.3).
+/// Improves the functions of mid_functions() for large rotations of the whole element. The mean of the `foreseen`
+/// increments is a rotation by the angle theta about e, with the stretch P = I + (cos(theta/2) - 1) e e^T. Values
+/// become P^-1 I_g P, derivatives P I_g' P. Then the conjugate strain is exact to first order in the deformation, for
+/// any rotation of the element in the step, and the energy multiplier is small (beyond.md 1.3).
 template <int Nodes, typename S>
 void stretch_mid_functions(const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
   const Vector3T<S> mean = mean_of<Nodes, S>(foreseen);
@@ -232,7 +234,7 @@ void stretch_mid_functions(const std::array<Vector3T<S>, Nodes>& foreseen, Eleme
   }
 }
 
-/// The stiffness points for given nodal positions and rotations.
+/// Computes the stiffness points for given nodal positions and rotations.
 template <int Nodes, typename S>
 void element_points(const ConservingElement<Nodes, S>& element, const std::array<Vector3T<S>, Nodes>& position,
                     const std::array<QuaternionT<S>, Nodes>& orientation, PointKinematicsT<S>* points) {
@@ -246,8 +248,8 @@ void element_points(const ConservingElement<Nodes, S>& element, const std::array
 
 namespace conserving {
 
-/// The stiffness points of a step: `end` receives them at t_{n+1}. Their generalised shape functions are set
-/// `with_variation`, or where the mid functions ask for them. `functions` must outlive `at`.
+/// Computes the stiffness points of a step. `end`: output, the points at t_{n+1}. Sets their generalised shape
+/// functions if `with_variation`, or if the rule's mid functions need them. `functions` must outlive `at`.
 template <int Nodes, typename S>
 void set_points(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
                 const ElementFunctions<Nodes, S>& functions, bool with_variation, PointKinematicsT<S>* end,
@@ -276,7 +278,7 @@ void set_points(const ConservingElement<Nodes, S>& element, const BeamNodes<Node
   }
 }
 
-/// The element's energy multiplier.
+/// The energy multiplier of an element, see MultiplierWork.
 template <int Nodes, typename S>
 struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
   using Base = MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>>;
@@ -284,7 +286,7 @@ struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
 
   void add(const S& weight, const SectionStiffness<S>& stiffness, const PointKinematicsT<S>& begin,
            const PointKinematicsT<S>& end, Point<Nodes, S>& p) {
-    // Tangent-scaled vector of Q = Lambda_{n+1} Lambda_n^T: 4 vee(Q) / (1 + tr Q).
+    // Tangent-scaled rotation vector w_point of Q = Lambda_{n+1} Lambda_n^T: 4 vee(Q) / (1 + tr Q).
     Vector3T<S> axial = so3::cross(begin.rotation.col(0), end.rotation.col(0));
     S trace = so3::dot(begin.rotation.col(0), end.rotation.col(0));
     for (int c = 1; c < 3; ++c) {
@@ -292,7 +294,7 @@ struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
       trace += so3::dot(begin.rotation.col(c), end.rotation.col(c));
     }
     const Vector3T<S> turn = (S(2) / (S(1) + trace)) * axial;
-    // Delta Gamma - s_Gamma = Lambda_bar^T (arm x (w_point - w)), free of cancellation.
+    // Delta Gamma - s_Gamma = Lambda_bar^T (arm x (w_point - w)) has no cancellation.
     Vector6T<S> defect;  // Delta Sigma - s
     defect.template head<3>() = p.average_rotation.transpose() * so3::cross(p.arm, Vector3T<S>(turn - p.increment));
     defect.template tail<3>() =
@@ -300,7 +302,8 @@ struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
     this->add_defect(weight, stiffness, defect, p);
   }
 
-  /// Adds the tangent of add_moments(). `work_row`: d(work) for {dr, spin} of the nodes; `inverse_tangent`: S(w)^{-1}.
+  /// Adds the tangent of add_moments(). `work_row`: derivative of the work with respect to {dr, spin} of the nodes;
+  /// `inverse_tangent`: S(w)^{-1}.
   void add_tangent(const std::array<Vector6T<S>, Nodes>& work_row,
                    const std::array<Matrix3T<S>, Nodes>& inverse_tangent, BlockTangent<Nodes, S>& tangent) const {
     const S by_work = this->slope(), mu = seen_work * by_work;
@@ -317,7 +320,7 @@ struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
   }
 };
 
-/// What the strains become along a Newton update {dr, spin} of the nodes, to first order, from those of set_strains().
+/// Computes carried strains (see flexarm::carry_strains()) from the strains of set_strains() and an update {dr, spin}.
 template <int Nodes, typename S>
 void carry_strains(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes,
                    const StepPoints<Nodes, S>& at, const std::array<Vector6T<S>, Nodes>& update,

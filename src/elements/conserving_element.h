@@ -1,5 +1,6 @@
 #pragma once
-/// Input and output of the kernel of the energy-momentum family, for one element (S = double) or a pack of them.
+/// Input and output of the beam kernel of the energy-momentum family, for one element (S = double) or a pack of
+/// elements.
 
 #include <array>
 
@@ -39,7 +40,7 @@ struct SectionStiffness {
     }
     return out;
   }
-  /// D C D for a diagonal D.
+  /// Returns D C D for a diagonal D.
   SectionStiffness scaled(const Vector6T<S>& diagonal) const {
     SectionStiffness out = *this;
     for (int i = 0; i < 3; ++i)
@@ -52,7 +53,7 @@ struct SectionStiffness {
   }
 };
 
-/// Constant data; units as in BeamElement.
+/// Constant data of an element; units as in BeamElement.
 template <int Nodes, typename S = double>
 struct ConservingElement {
   struct Point {
@@ -61,7 +62,7 @@ struct ConservingElement {
     Vector6T<S> reference_strain;
   };
   std::array<Point, Nodes - 1> points;
-  /// By points; of a uniform element only the first is used, so that less is read.
+  /// By points. For a uniform element only the first one is used, to read less memory.
   std::array<SectionStiffness<S>, Nodes - 1> sections;
   bool is_uniform = true;
   Eigen::Matrix<S, Nodes, Nodes> mass;
@@ -73,7 +74,7 @@ struct ConservingElement {
   SectionStiffness<S> damped_section(int point) const { return section(point).scaled(damping_scale); }  ///< D C D
 };
 
-/// Makes an element a lane.
+/// Writes an element into a lane of a pack.
 template <int Nodes, typename S>
 void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nodes>& element) {
   for (int k = 0; k < Nodes - 1; ++k) {
@@ -93,7 +94,7 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
   set_mass_and_damping_lane(pack, lane, element);
 }
 
-/// Nodal motion over a step.
+/// The motion of an element's nodes over a step.
 template <int Nodes, typename S = double>
 struct BeamNodes {
   std::array<Vector3T<S>, Nodes> begin, end;      ///< positions [m]
@@ -106,12 +107,12 @@ struct BeamNodes {
 template <int Nodes, typename S = double>
 using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes, S>, Nodes - 1>;
 
-/// Strains at the stiffness points of an element that Newton's method carries along (docs/notes/newton.md).
+/// Carried strains at the stiffness points of an element, see carry_strains() (docs/notes/newton.md).
 template <int Nodes, typename S = double>
 struct CarriedStrains {
   std::array<Vector6T<S>, Nodes - 1> end;        ///< at the end of the step
   std::array<Vector6T<S>, Nodes - 1> conjugate;  ///< s
-  bool has_conjugate = false;                    ///< else that of the trial configuration counts
+  bool has_conjugate = false;                    ///< if false, s of the trial configuration is used
 };
 
 /// Block (i, j): derivative of node i's {f, phi} with respect to node j's {dr, spin}.
@@ -122,7 +123,7 @@ using BlockTangent = std::array<std::array<Matrix6T<S>, Nodes>, Nodes>;
 template <int Nodes, typename S = double>
 struct BlockSystem {
   std::array<Vector6T<S>, Nodes> residual;
-  std::array<Vector6T<S>, Nodes> carried;  ///< what carried stresses would add to it; only where there are some
+  std::array<Vector6T<S>, Nodes> carried;  ///< residual with carried strains minus `residual`; set only with these
   BlockTangent<Nodes, S> tangent;
   S dissipated;  ///< over the step [J]
 };

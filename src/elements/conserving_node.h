@@ -1,5 +1,5 @@
 #pragma once
-/// Inertia lumped at a node over a step of a conserving scheme, for one node (S = double) or a pack of them.
+/// Inertia lumped at a node over a step of a conserving scheme, for one node (S = double) or a pack of nodes.
 
 #include <cassert>
 
@@ -20,18 +20,18 @@ template <typename S>
 struct NodeMotion {
   Matrix3T<S> begin, end;                  ///< rotations
   Vector3T<S> displacement;                ///< [m]
-  Vector3T<S> increment;                   ///< of rotation: tangent-scaled or not
-  Matrix3T<S> inverse_tangent;             ///< of the increment; with the tangent only
-  Vector3T<S> velocity, angular_velocity;  ///< at the beginning; the latter material
+  Vector3T<S> increment;                   ///< of rotation, tangent-scaled or not
+  Matrix3T<S> inverse_tangent;             ///< maps a spin to the increment's variation; needed only for the tangent
+  Vector3T<S> velocity, angular_velocity;  ///< at the beginning; angular velocity in the node's frame
 };
 
-/// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0, with v_1 = factor Delta r / h - (factor - 1) v_0 and the
-/// average rule for W. (beam.md 3.4)
+/// Residual and tangent: f = m (v_1 - v_0) / h, phi = ((Lambda J W)_1 - (Lambda J W)_0) / h, with
+/// v_1 = factor Delta r / h - (factor - 1) v_0 and the rule of AverageRate for W. (beam.md 3.4)
 template <typename S>
 struct ConservingNode {
   Vector6T<S> residual;    ///< {f, phi}
-  S translational;         ///< d(f)/d(r), times I
-  Matrix3T<S> rotational;  ///< d(phi)/d(spin); with the tangent only
+  S translational;         ///< d(f)/d(r) = translational I
+  Matrix3T<S> rotational;  ///< d(phi)/d(spin); set only with the tangent
 
   ConservingNode(const LumpedInertia<S>& inertia, const NodeMotion<S>& node, double factor, double step,
                  bool with_tangent) {

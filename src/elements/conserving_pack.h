@@ -1,6 +1,6 @@
 #pragma once
-/// The kernels of conserving_beam.h and conserving_tangent.h on packs, compiled once for each order and run with the
-/// widest registers of the processor at hand. `Nodes`: 2 to 5.
+/// The kernels of conserving_beam.h and conserving_tangent.h for packs of elements. They are compiled once for each
+/// order of elements and use the widest registers of the processor (math/simd.h). `Nodes`: 2 to 5.
 
 #include "elements/beam_point.h"
 #include "elements/conserving_element.h"

@@ -23,7 +23,7 @@ void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNo
   if (with_tangent) add_tangent<Nodes>(element, nodes, rule, at, multiplier, system);
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(conserving_beam<Nodes>) conserving_beam<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

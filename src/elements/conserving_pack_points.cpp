@@ -46,7 +46,7 @@ void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNode
   });
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes)                                                      \
   template decltype(mid_functions<Nodes>) mid_functions<Nodes>;                 \
   template decltype(stretch_mid_functions<Nodes>) stretch_mid_functions<Nodes>; \

@@ -1,6 +1,6 @@
 #pragma once
-/// Stages of a pack's step that conserving_pack_forces.cpp calls; each is a unit of its own, or compilers need too much
-/// memory.
+/// Stages of a pack's step that conserving_pack_forces.cpp calls. Each is compiled in a unit of its own, since
+/// compilers need too much memory otherwise.
 
 #include "elements/conserving_beam.h"
 #include "elements/conserving_element.h"

@@ -12,7 +12,7 @@ void add_tangent(const ConservingElement<Nodes, Pack>& element, const BeamNodes<
   simd::run([&] { conserving::add_tangent<Nodes, Pack>(element, nodes, rule, at, multiplier, system); });
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(add_tangent<Nodes>) add_tangent<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

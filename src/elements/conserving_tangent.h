@@ -1,13 +1,13 @@
 #pragma once
-/// The linearisation of conserving_beam.h. The algebra is by 3 x 3 blocks in world axes: a point has few of them that
-/// are not zero, and fewer still where the section couples no forces with curvatures.
+/// The tangent of the beams of conserving_beam.h. It is computed in 3 x 3 blocks in world axes, since most blocks of a
+/// point are zero, and more so if the section does not couple forces with curvatures.
 
 #include "elements/conserving_beam.h"
 #include "math/cayley.h"
 
 namespace flexarm::conserving {
 
-/// Adds a form of a point as a row of the nodes' {dr, spin}.
+/// Adds a linear form of a point to a row with respect to the nodes' {dr, spin}.
 template <int Nodes, typename S>
 void add_form(const PointForm<S>& form, const NodalValues<Nodes, S>& derivative,
               const GeneralisedShapeFunctions<Nodes, S>& generalised, const GeneralisedShapeFunctions<Nodes, S>& mid,
@@ -22,13 +22,14 @@ void add_form(const PointForm<S>& form, const NodalValues<Nodes, S>& derivative,
   }
 }
 
-/// Slopes of a stress resultant with respect to a point's {dr', spin, spin', dw, dw'}, in world axes.
+/// Derivatives of a stress resultant with respect to a point's {dr', spin, spin', dw, dw'}, in world axes.
 template <typename S>
 struct ResultantSlopes {
   Matrix3T<S> position, spin, spin_derivative, increment, increment_derivative;
 };
 
-/// The contributions of stiffness blocks to the slopes of weight Lambda_bar (C (d(strain at the end) / 2 + factor ds)).
+/// Computes the contributions of 3 x 3 stiffness blocks to the derivatives of the weighted resultants: weight
+/// Lambda_bar C (d(strain at the end) / 2 + factor ds).
 template <int Nodes, typename S>
 struct SlopeBuilder {
   const Point<Nodes, S>& p;
@@ -43,7 +44,8 @@ struct SlopeBuilder {
         spin_curvature(factor * p.increment_derivative),
         factor(factor) {}
 
-  /// Of a stiffness that strains Gamma act on. Sets all that Gamma depends on, or adds to the spin.
+  /// For a block that multiplies strains Gamma. Sets the derivatives with respect to dr' and dw; sets that with respect
+  /// to the spin, or `adds` to it.
   void set_strain_part(const Matrix3T<S>& stiffness, bool adds, ResultantSlopes<S>& slopes) const {
     const Matrix3T<S> map = weighted_average.lazyProduct(stiffness);
     const Matrix3T<S> end = S(0.5) * map.lazyProduct(p.end_rotation.transpose());
@@ -52,14 +54,15 @@ struct SlopeBuilder {
     slopes.increment = times_hat<S>(conjugate, p.arm);
     set(times_hat<S>(end, spin_strain), adds, slopes.spin);
   }
-  /// Of one that curvatures K act on.
+  /// For a block that multiplies curvatures K. Sets the derivatives with respect to spin' and dw'; sets that with
+  /// respect to the spin, or `adds` to it.
   void set_curvature_part(const Matrix3T<S>& stiffness, bool adds, ResultantSlopes<S>& slopes) const {
     const Matrix3T<S> map = weighted_average.lazyProduct(stiffness);
     slopes.spin_derivative = S(0.5) * map.lazyProduct(p.end_rotation.transpose());
     slopes.increment_derivative = factor * map.lazyProduct(p.average_rotation.transpose());
     set(times_hat<S>(slopes.spin_derivative, spin_curvature), adds, slopes.spin);
   }
-  /// Adds those of factor ds alone. Of a stiffness that Gamma act on.
+  /// For a block that multiplies Gamma: adds the derivatives of the part factor ds alone.
   void add_conjugate_strain_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
     const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
     const Matrix3T<S> conjugate = map.lazyProduct(p.average_rotation.transpose());
@@ -67,13 +70,13 @@ struct SlopeBuilder {
     slopes.increment += times_hat<S>(conjugate, p.arm);
     slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.stretch);
   }
-  /// Of one that K act on.
+  /// For a block that multiplies K: adds the derivatives of the part factor ds alone.
   void add_conjugate_curvature_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
     const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
     slopes.increment_derivative += map.lazyProduct(p.average_rotation.transpose());
     slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.increment_derivative);
   }
-  /// Of the turn of Lambda_bar under a constant stress.
+  /// Adds the geometric part: the derivative due to the rotation of Lambda_bar at constant stress.
   void add_turn(const Vector3T<S>& stress, ResultantSlopes<S>& slopes) const {
     slopes.spin -= so3::hat(Vector3T<S>(S(0.5) * (p.end_rotation * stress)));
   }
@@ -87,7 +90,7 @@ struct SlopeBuilder {
   }
 };
 
-/// Rows of the moments: tests' m - tests couple for every node, `visit(i, rows)`.
+/// Calls visit(i, rows) with the moment rows I_t^i'^T m - I_t^i^T couple of every node i. `m` may be null.
 template <int Nodes, typename S, class Visit>
 void for_moment_rows(const GeneralisedShapeFunctions<Nodes, S>& tests, const Matrix3T<S>* m, const Matrix3T<S>& couple,
                      const Visit& visit) {
@@ -101,7 +104,8 @@ void for_moment_rows(const GeneralisedShapeFunctions<Nodes, S>& tests, const Mat
   visit(Nodes - 1, rest);
 }
 
-/// Adds the tangent of add_resultants(). `n`: weighted; `dn`, `dm`: slopes of n and m.
+/// Adds the tangent of add_resultants(). `n`: weighted force; `dn`, `dm`: derivatives of n and m. `is_coupled`: see
+/// SectionStiffness.
 template <int Nodes, typename S>
 void add_tangent(const NodalValues<Nodes, S>& derivative, const GeneralisedShapeFunctions<Nodes, S>& tests,
                  const Point<Nodes, S>& p, const std::array<Matrix3T<S>, Nodes>& inverse_tangent, bool is_coupled,
@@ -166,7 +170,7 @@ void add_tangent(const ConservingElement<Nodes, S>& element, const BeamNodes<Nod
     if (is_coupled) {
       slope.set_curvature_part(section.coupling, true, dn);
       slope.set_strain_part(section.coupling.transpose(), true, dm);
-    } else {  // not used, but compilers warn
+    } else {  // not used; avoids compiler warnings
       dn.spin_derivative.setConstant(S(0));
       dn.increment_derivative.setConstant(S(0));
       dm.position.setConstant(S(0));

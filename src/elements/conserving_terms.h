@@ -1,11 +1,11 @@
 #pragma once
-/// What beams of the energy-momentum family have in common in space and in the plane: translational inertia,
-/// strains and stresses of a stiffness point, dampers with a memory there, the energy multiplier, and how forces are
-/// made of all these. Over a step in which the strain grows by s, each damper adds factor C s - remembered to the
-/// stress. (docs/schemes.md, "Numerical dissipation", "Structural damping")
+/// What spatial and planar beams of the energy-momentum family share: translational inertia, strains and stresses at a
+/// stiffness point, dampers with memory, the energy multiplier, and the assembly of the element's forces from these.
+/// Over a step in which the strain changes by s, each damper adds factor C s - remembered to the stress.
+/// (docs/schemes.md, "Numerical dissipation", "Structural damping")
 ///
-/// In the plane vectors have two components, turns are numbers, and there are three strains. What else differs is in
-/// conserving_beam.h and planar_beam.h: set_point_strains(), add_resultants() and strain_form().
+/// In the plane, vectors have two components, rotations are scalars, and there are three strains. Functions with other
+/// differences are in conserving_beam.h and planar_beam.h: set_point_strains(), add_resultants() and strain_form().
 
 #include <array>
 #include <cassert>
@@ -18,8 +18,9 @@
 
 namespace flexarm {
 
-/// Per node the force [N]; its derivative by a node's own displacement over the element's mass [1/s^2], the same for
-/// all directions; what damping takes over the step [J].
+/// Translational inertia and mass-proportional damping of an element over a step. `forces`: per node [N]. `slope`
+/// [1/s^2]: the derivative of node i's force by node j's displacement is slope * mass(i, j), in every direction.
+/// `dissipated`: by damping over the step [J].
 template <int Nodes, class Vector>
 struct TranslationalForces {
   using S = typename Vector::Scalar;
@@ -27,15 +28,15 @@ struct TranslationalForces {
   S slope, dissipated;
 };
 
-/// (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and mass-proportional
-/// damping by the mean velocity Delta r / h.
+/// Returns (1/h) int I^i I^j mass ds (v_{n+1} - v_n), with v_{n+1} = factor Delta r / h - (factor - 1) v_n, plus
+/// mass-proportional damping by the mean velocity Delta r / h.
 template <class Vector, int Nodes, class Element, class NodeMotion>
 inline TranslationalForces<Nodes, Vector> translational_forces(const Element& element, const NodeMotion& nodes,
                                                                double factor, double step) {
   using S = typename Vector::Scalar;
   TranslationalForces<Nodes, Vector> out;
   std::array<Vector, Nodes> mean, force;
-  // Without conjugation, as so3::dot(), of which this has the order of operations.
+  // Without complex conjugation, and with the order of operations of so3::dot().
   const auto product = [](const Vector& a, const Vector& b) {
     S sum = a[0] * b[0];
     for (int k = 1; k < a.size(); ++k) sum += a[k] * b[k];
@@ -66,7 +67,7 @@ inline TranslationalForces<Nodes, Vector> translational_forces(const Element& el
 
 namespace flexarm::conserving {
 
-/// Of strains of any number; dot6() is the product of all six.
+/// Returns the scalar product of two vectors of strains or stresses, six in space, three in the plane.
 template <typename S, int Size>
 S strain_product(const Eigen::Matrix<S, Size, 1>& a, const Eigen::Matrix<S, Size, 1>& b) {
   if constexpr (Size == 6)
@@ -79,7 +80,7 @@ S strain_product(const Eigen::Matrix<S, Size, 1>& a, const Eigen::Matrix<S, Size
 template <typename S, int Size = 6>
 struct PointStress {
   using Strain = Eigen::Matrix<S, Size, 1>;
-  Strain strain, stress;                      // means of both ends
+  Strain strain, stress;                      // means of the beginning and the end
   Strain conjugate_strain, conjugate_stress;  // s and C s
 
   PointStress() = default;
@@ -91,13 +92,13 @@ struct PointStress {
         conjugate_stress(stiffness.stress(conjugate)) {}
 };
 
-/// The strain rate at the end: (w_0 + w_1)/2 = s/h.
+/// Returns the strain rate w_1 at the end, from (w_0 + w_1)/2 = s/h.
 template <class Memory, typename S, int Size>
 Eigen::Matrix<S, Size, 1> end_rate(const Memory& begin, const Eigen::Matrix<S, Size, 1>& s, double step) {
   return S(2 / step) * s - begin.rate;
 }
 
-/// See NumericalDissipation.
+/// The damper of numerical dissipation at a stiffness point, see NumericalDissipation.
 template <typename S, int Size = 6>
 struct NumericalDamper {
   using Strain = Eigen::Matrix<S, Size, 1>;
@@ -116,32 +117,33 @@ struct NumericalDamper {
   }
 };
 
-/// What takes the place of the viscosity eta, three passive parts side by side: a dashpot, a dashpot behind a spring
-/// that relaxes with the time h_0, and an inertance. The last two grow with eta until it is h_0.
+/// Splits a viscosity eta into three passive parts in parallel: a dashpot, a dashpot in series with a spring (a Maxwell
+/// element with the relaxation time h_0), and an inertance. The shares of the last two in eta grow until eta = h_0.
 template <typename S>
 struct DamperParts {
   S dashpot, delayed, inertance;  // [s], [s], [s^2]
 
   DamperParts(const S& viscosity, double relaxation) {
     using std::abs;
-    const S least = S(0.5) * (viscosity + S(relaxation) - abs(viscosity - S(relaxation)));  // of eta and h_0
+    const S least = S(0.5) * (viscosity + S(relaxation) - abs(viscosity - S(relaxation)));  // minimum of eta and h_0
     delayed = relaxation > 0 ? S(0.25 / relaxation) * viscosity * least : S(0);
     inertance = S(relaxation) * delayed;
     dashpot = viscosity - delayed;
   }
 };
 
-/// The stress eta C (strain rate) by these parts: with the delayed rate q,
+/// The damper of structural damping at a stiffness point: the stress eta C (strain rate), by the parts of DamperParts.
+/// With the delayed rate q, it is
 ///   C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
-/// A dashpot alone would leave the strain of a mode that it damps strongly nearly as it is and make its velocity change
-/// the sign in every step. These bring both to rest. inertance (w.Cw + q.Cq)/2 is stored.
+/// With a dashpot alone, the strain of a strongly damped mode would hardly decrease, and its velocity would change sign
+/// in every step. With these parts both come to rest. The energy inertance (w.Cw + q.Cq)/2 is stored.
 template <typename S, int Size = 6>
 struct StructuralDamper {
   using Strain = Eigen::Matrix<S, Size, 1>;
   S factor, dissipated;  // [-], [J/m]
   Strain remembered, delayed_rate;
 
-  /// `stress` C s; `relaxation` h_0 [s].
+  /// `stress`: C s; `relaxation`: h_0 [s].
   template <class Memory, class Stiffness>
   StructuralDamper(const DamperParts<S>& parts, double relaxation, const Memory& begin, const Strain& s,
                    const Strain& stress, const Stiffness& stiffness, double step) {
@@ -156,19 +158,19 @@ struct StructuralDamper {
   }
 };
 
-/// The work of an element's energy multiplier mu. The stresses work on the defect Delta Sigma - s of the conjugate
-/// strain, which the relative rotations of the nodes alone make. Moments mu (w_i - mean w), which sum to zero, do that
-/// work (beyond.md 1.3).
+/// The energy multiplier mu of an element. The conjugate strain s differs from the change of strain Delta Sigma by a
+/// defect, which is due to relative rotations of the nodes. The work of the stresses on Delta Sigma - s is missing in
+/// the energy balance. Moments mu (w_i - mean w) on the nodes, which sum to zero, do exactly this work (beyond.md 1.3).
 template <int Nodes, class Turn, class Strain>
 struct MultiplierWork {
   using S = typename Strain::Scalar;
   static constexpr bool kIsPlanar = std::is_same_v<Turn, S>;
-  /// Relative increments below this [rad] are rest: there is nothing that a correction could work on.
+  /// Relative increments below this count as rest: there is no rotation on which a correction could do work [rad].
   static constexpr double kRest = 1e-7;
 
   std::array<Turn, Nodes> relative;  ///< w_i - mean w
-  S square = S(0);                   ///< sum of their squares
-  S work = S(0), seen_work = S(0);   ///< of the trial configuration's stresses, and of those that are carried
+  S square = S(0);                   ///< sum of the squares of `relative`
+  S work = S(0), seen_work = S(0);   ///< missing work, with the trial configuration's stresses; with Point::seen
 
   void set_relative(const std::array<Turn, Nodes>& increments) {
     Turn mean = increments[0];
@@ -183,16 +185,16 @@ struct MultiplierWork {
     }
   }
 
-  /// d(mu) / d(work).
+  /// Returns d(mu) / d(work).
   S slope() const { return square / guarded(); }
-  /// d(work) as a linear form at a point, with the stresses that are seen.
+  /// Returns the contribution of a point to d(seen_work), as a linear form.
   template <class Point>
   auto form(const S& weight, const Point& p) const {
     return strain_form(p, Strain(-weight * p.seen.stress),
                        Strain(weight * Strain(p.half_defect_stress + p.seen.stress)));
   }
 
-  /// Adds the moments, and to `carried` what the seen stresses would add to them.
+  /// Adds the moments to the residual, and to `carried` their difference with Point::seen.
   template <class System>
   void add_moments(System& system, bool has_carried) const {
     const S mu = work * slope(), rest = seen_work * slope() - mu;
@@ -201,7 +203,7 @@ struct MultiplierWork {
   }
 
  protected:
-  /// Of a point; `defect` Delta Sigma - s.
+  /// Adds the work of a point. `defect`: Delta Sigma - s.
   template <class Stiffness, class Point>
   void add_defect(const S& weight, const Stiffness& stiffness, const Strain& defect, Point& p) {
     work += weight * strain_product(p.own.stress, defect);
@@ -220,7 +222,7 @@ struct MultiplierWork {
   }
 };
 
-/// See translational_forces(). Sets the system.
+/// Sets (does not add to) the system to the translational inertia and mass damping of translational_forces().
 template <int Nodes, class Element, class Motion, class System>
 void set_translation(const Element& element, const Motion& nodes, double factor, double step, bool with_tangent,
                      System& system) {
@@ -239,8 +241,8 @@ void set_translation(const Element& element, const Motion& nodes, double factor,
   }
 }
 
-/// Strains and elastic stresses at the points. `begin`, `end`: those at t_n and t_{n+1}; `carried`: what the geometric
-/// part of the tangent sees in the place of the latter's strains; may be null.
+/// Computes strains and elastic stresses at the points of a step. `begin`, `end`: the points at t_n and t_{n+1}.
+/// `carried`: strains that the geometric part of the tangent uses in place of those of `end`; may be null.
 template <int Nodes, class Element, class Motion, class Kinematics, class Carried, class Points>
 void set_strains(const Element& element, const Motion& nodes, const Kinematics* begin, const Kinematics* end,
                  const Carried* carried, Points& at) {
@@ -254,20 +256,20 @@ void set_strains(const Element& element, const Motion& nodes, const Kinematics* 
   }
 }
 
-/// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family, at the
-/// points of set_points(). `begin` holds them at t_n, `end` at t_{n+1}; `memory`, `end_memory` serve numerical
-/// dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere, the tangent of
-/// what is not linear by add_tangent() (conserving_tangent.h).
+/// Computes internal forces, damping and translational inertia of one element of the EM family over a step of length
+/// `step` [s], at the points of set_points(). `begin` holds the points at t_n, `end` those at t_{n+1}. `memory` and
+/// `end_memory` are for numerical dissipation and damped elements; else they may be null. Rotary inertia is added
+/// elsewhere. Sets only the tangent of the linear terms; add_tangent() (conserving_tangent.h) adds the rest.
 ///
-/// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
-/// of the step: those of mid_functions() (MidFunctions::Explicit) or of the beginning (Symmetric), averaged with those
-/// of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a factor that
-/// falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those of the
-/// middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is first order
-/// wherever an element is deformed.
+/// Generalised shape functions for about the middle of the step test the moment rows and interpolate the increments.
+/// They are those of mid_functions() (MidFunctions::Explicit), or the average of those of the beginning and the end
+/// (Symmetric). The tangent does not include the variation of the latter. So Newton's method then converges linearly,
+/// by a factor that decreases with the step. Any such functions conserve momenta (sum I_g = 1) and, with the
+/// multiplier, energy. With functions of the middle, Delta(strain) - s is of third order in the step. With Lagrange
+/// functions (beyond.md 1.1) it would be of first order in all deformed elements.
 ///
-/// With a tangent, strains may be carried along (`has_carried`): then what its geometric part sees are not those of the
-/// trial configuration. The residual does not depend on them (docs/notes/newton.md).
+/// With `has_carried`, the geometric part of the tangent uses carried strains in place of those of the trial
+/// configuration. The residual does not depend on them (docs/notes/newton.md).
 template <int Nodes, class Element, class Motion, class Kinematics, class Memory, class Points, class Multiplier,
           class System>
 void set_forces(const Element& element, const Motion& nodes, const TimeRule& rule, const Kinematics* begin,

@@ -1,5 +1,5 @@
 #pragma once
-/// The nodal motion of one element in a state.
+/// Reads the nodal motion, and the strains, of one element from a state.
 
 #include "elements/beam_point.h"
 #include "model/state.h"
@@ -23,15 +23,15 @@ struct ElementConfiguration {
   }
 };
 
-/// Rotation and curvature of an integration point by the scheme's own interpolation: what the state keeps where that
-/// depends on the past (`kept`, at `index`), else the local interpolation.
+/// Returns rotation and curvature of an integration point by the scheme's own interpolation. If that depends on the
+/// past, the state stores them (`kept`, at `index`); else `kept` is empty, and the local interpolation is evaluated.
 template <int Nodes, class Point>
 PointRotation point_rotation(const LocalRotations<Nodes>& local, const Point& point,
                              const std::vector<PointRotation>& kept, int index) {
   return kept.empty() ? local.evaluate(point.shape, point.derivative) : kept[index];
 }
 
-/// {Gamma, K} [-, 1/m] about the mass centroid at the element's stiffness point k, by the scheme's own interpolation.
+/// Returns {Gamma, K} [-, 1/m] about the mass centroid at stiffness point k, by the scheme's own interpolation.
 template <int Nodes>
 Vector6 centroid_strain(const BeamElement<Nodes>& element, const ElementConfiguration<Nodes>& nodes,
                         const LocalRotations<Nodes>& local, const State& state, int k) {

@@ -1,12 +1,12 @@
 #pragma once
-/// What packs of elements have in common, in space and in the plane.
+/// Writes data of one element into a lane of a pack of elements; shared by spatial and planar packs.
 
 #include "math/lanes.h"
 #include "model/beam_element.h"
 
 namespace flexarm {
 
-/// Interpolation at an integration point.
+/// Writes the shape functions and the weight of an integration point.
 template <class PackPoint, class Point>
 void set_interpolation_lane(PackPoint& pack, int lane, const Point& point) {
   set_lane(pack.shape, lane, point.shape);
@@ -14,7 +14,7 @@ void set_interpolation_lane(PackPoint& pack, int lane, const Point& point) {
   set_lane(pack.weight, lane, point.weight);
 }
 
-/// Mass and damping, but for how strongly which strain is damped.
+/// Writes mass and damping, except the damping scales of single strains.
 template <class Pack, int Nodes>
 void set_mass_and_damping_lane(Pack& pack, int lane, const BeamElement<Nodes>& element) {
   set_lane(pack.mass, lane, element.mass);

@@ -47,7 +47,7 @@ void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
   }
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes)                \
   template class ElementRotations<Nodes>; \
   template decltype(carry_strains<Nodes>) carry_strains<Nodes>;

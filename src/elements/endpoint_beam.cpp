@@ -83,17 +83,17 @@ void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<
 
 namespace {
 
-/// Stress at a point of a beam.
+/// Stress at a point of a beam at the end of a step.
 struct EndpointStress {
   Vector6 stress, strain_rate = Vector6::Zero();
-  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped
+  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped, see add_damping()
   double dissipated = 0;  ///< over the step [J/m]
 
-  /// Without damping.
+  /// The elastic stress.
   EndpointStress(const Matrix6& stiffness, const Vector6& strain) : stress(stiffness * strain) {}
 
-  /// Adds stiffness-proportional damping by the strain rate at t_{n+1+alpha}. `damping`: eta of
-  /// BeamElement::stiffness_damping; `damped`: D C D of the same. `begin`, `begin_rate`: at the beginning of the step.
+  /// Adds stiffness-proportional damping by the strain rate at t_{n+1+alpha}. `damping`: eta, `damped`: D C D, see
+  /// BeamElement::stiffness_damping. `begin`, `begin_rate`: strain and its rate at the beginning of the step.
   void add_damping(double damping, const Matrix6& damped, const Vector6& strain, const Vector6& begin,
                    const Vector6& begin_rate, const NewmarkRule& rule) {
     const Vector6 increment = (strain - begin) / (1 + rule.alpha);
@@ -150,7 +150,7 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
   }
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes)                                                                            \
   template decltype(SpinForm::add_point<Nodes>) SpinForm::add_point<Nodes>;                           \
   template decltype(VariationForm::add_point<Nodes>) VariationForm::add_point<Nodes>;                 \

@@ -12,7 +12,7 @@ using so3::hat;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-/// A length by which may be divided: what has no length pulls nowhere.
+/// Returns a length that is safe to divide by. An element of length zero has no direction, and then exerts no force.
 double divisor(double length) {
   return std::max(length, std::numeric_limits<double>::min());
 }
@@ -35,7 +35,7 @@ NodePose pose_of(const State& state, int node) {
 
 }  // namespace
 
-/// World axes, at one instant or in the mean of two.
+/// Arms and distance of the two points in world axes, at one instant or averaged over two.
 struct LineElement::Ends {
   Vector3 child_arm, parent_arm;
   Vector3 distance;  // from the parent's to the child's point
@@ -101,7 +101,7 @@ void LineElement::evaluate(const ForceStep& step, const int*, ForceAction& actio
   action.residual = residual.head(action.residual.size());
   if (action.tangent.size() == 0) return;
 
-  // Of the distance at the end, by {displacement, spin} of child and parent.
+  // Derivative of the distance at the end with respect to {displacement, spin} of child and parent.
   Eigen::Matrix<double, 3, 12> distance;
   distance << Matrix3::Identity(), -hat(end.child_arm), -Matrix3::Identity(), hat(end.parent_arm);
   const double density_slope = (tension.slope - weight * density) / length;
@@ -110,7 +110,7 @@ void LineElement::evaluate(const ForceStep& step, const int*, ForceAction& actio
       weight * density * distance + v.distance * (along.transpose() * distance);
   Matrix12 tangent;
   tangent << d_force, hat(v.child_arm) * d_force, -d_force, -hat(v.parent_arm) * d_force;
-  // The arms turn with their nodes.
+  // The arms rotate with their nodes.
   tangent.block<3, 3>(3, 3) += weight * hat(force) * hat(end.child_arm);
   tangent.block<3, 3>(9, 9) -= weight * hat(force) * hat(end.parent_arm);
   action.tangent = tangent.topLeftCorner(action.tangent.rows(), action.tangent.cols());
@@ -120,13 +120,13 @@ double LineElement::energy(const State& state, const double*) const {
   return energy(ends(state).length());
 }
 
-ForceMeasures LineElement::measures(const State& state, const int*) const {
+ForceMeasures LineElement::measures(const State& state, const double*, const int*) const {
   const Ends here = ends(state);
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(reach().size());
   return {gradient(here).head(size).transpose(), Eigen::MatrixXd::Constant(1, 1, elastic(here.length()).slope)};
 }
 
-DamperTensions LineElement::dampers(const State&, const Eigen::VectorXd& rates) const {
+DamperTensions LineElement::dampers(const State&, const double*, const Eigen::VectorXd& rates) const {
   assert(rates.size() == 1);
   const LineTension damping = damper(rates[0]);
   return {Eigen::VectorXd::Constant(1, damping.value), Eigen::MatrixXd::Constant(1, 1, damping.slope)};
@@ -134,6 +134,13 @@ DamperTensions LineElement::dampers(const State&, const Eigen::VectorXd& rates) 
 
 std::vector<ForceOutput> LineElement::outputs() const {
   return {{"length", "m"}, {"tension", "N"}};
+}
+
+void LineElement::put_line(const ForceMotion& motion, std::vector<Vector3>& points) const {
+  for (const NodePoint* point : {&parent_, &child_}) {
+    const NodePose node = pose_of(motion.state, point->node);
+    points.push_back(node.position + node.rotation * point->arm);
+  }
 }
 
 void LineElement::put_out(const ForceMotion& motion, std::vector<double>& values) const {

@@ -1,5 +1,5 @@
 #pragma once
-/// Force elements along the line between two points.
+/// Base class of force elements that act along the straight line between two points.
 
 #include <array>
 
@@ -9,48 +9,52 @@
 
 namespace flexarm {
 
-/// Tension over a step [N], positive where it pulls both points together.
+/// Tension over a step.
 struct LineTension {
-  double value = 0;
-  double slope = 0;       ///< by the length at the end [N/m]
+  double value = 0;       ///< positive if it pulls the points together [N]
+  double slope = 0;       ///< derivative with respect to the length at the end [N/m]
   double dissipated = 0;  ///< over the step [J]
   double work = 0;        ///< done on the mechanism from outside [J]
 };
 
-/// Base of the kinds that pull along the line between two points, or push them apart: they say how the tension follows
-/// from the length. Of means over the step with l the mean of both lengths and d that of both distances, the force is
-/// tension / l d. Its work is exactly -tension times the change of the length, and it adds to no momentum.
+/// A force element that pulls two points together, or pushes them apart. Derived classes define the tension as a
+/// function of the length. For schemes with mean forces, let l be the mean of the lengths at both ends of the step, and
+/// d that of the distance vectors. The force is tension / l * d. Its work is exactly -tension times the change of the
+/// length, and it does not change momenta.
 class LineElement : public ForceElement {
  public:
-  /// At least one of the points is on a node, and not both on the same.
+  /// At least one of the points must be on a node, and not both on the same one.
   LineElement(std::string name, const NodePoint& from, const NodePoint& to);
 
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   double energy(const State& state, const double* memory) const final;
-  ForceMeasures measures(const State& state, const int* nodes) const final;
-  DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const final;
-  /// length [m], and the tension [N] with published velocities
+  ForceMeasures measures(const State& state, const double* memory, const int* nodes) const final;
+  DamperTensions dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const final;
+  /// The length [m], and the tension [N] with published velocities.
   std::vector<ForceOutput> outputs() const override;
   void put_out(const ForceMotion& motion, std::vector<double>& values) const override;
+  void put_line(const ForceMotion& motion, std::vector<Vector3>& points) const override;
+  std::size_t most_line_points() const override { return 2; }
 
  protected:
-  /// `change`: of the length.
+  /// Returns the tension over a step. `change`: of the length.
   virtual LineTension tension(const CoordinateStep& change) const = 0;
-  /// What is stored at a length [J], and the tension that comes of it [N] with its slope [N/m], as at rest.
+  /// Returns the stored energy at a length [J].
   virtual double energy(double length) const = 0;
+  /// Returns the elastic tension at a length [N] and its slope [N/m].
   virtual LineTension elastic(double length) const = 0;
-  /// Of dampers, by the rate of the length: tension [N] and its slope [N s/m].
+  /// Returns the tension of dampers at a rate of the length [N], and its slope [N s/m].
   virtual LineTension damper(double rate) const = 0;
 
  private:
   struct Ends;
-  /// `nodes`: poses, or a state.
+  /// `nodes`: poses of all nodes, or a state.
   template <class Nodes>
   Ends ends(const Nodes& nodes) const;
-  /// Derivative of the length by {displacement, spin} of the nodes: 6 entries for each.
+  /// Returns the derivative of the length with respect to {displacement, spin} of child and parent, 6 entries each.
   Eigen::Matrix<double, 12, 1> gradient(const Ends& ends) const;
 
-  NodePoint child_, parent_;  // the child is on a node
+  NodePoint child_, parent_;  // the child is always on a node
 };
 
 }  // namespace flexarm

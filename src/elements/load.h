@@ -1,5 +1,5 @@
 #pragma once
-/// Residual and tangent of a nodal load.
+/// Forces of nodal loads over a step, and their derivatives.
 
 #include "model/joint.h"
 #include "model/model.h"
@@ -7,13 +7,13 @@
 
 namespace flexarm {
 
-/// With which rotation a load acts in a step.
+/// The rotation of the node with which a load acts in a step.
 enum class LoadPoint {
-  Mean,  ///< average rotation (conserving schemes): the work over the step is exact
+  Mean,  ///< mean rotation (conserving schemes), with exact work over the step
   End    ///< rotation at the end (statics, Newmark)
 };
 
-/// Where a scheme has them.
+/// Returns the LoadPoint of a scheme.
 inline LoadPoint load_point(const TimeRule& rule) {
   return rule.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
 }
@@ -24,7 +24,7 @@ struct LoadAction {
   Eigen::Matrix<double, 6, 3> derivative;
 };
 
-/// `scale`: value of the load's history. (beam.md 3.4)
+/// Returns the action of a load. `scale`: value of the load's history. (beam.md 3.4)
 LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin, const Matrix3& end, LoadPoint point);
 
 /// Spatial force and moment about the node, their derivative with respect to the node's {displacement, spin} at the
@@ -35,10 +35,10 @@ struct PullAction {
   double work = 0;
 };
 
-/// Of the pull on a load's point: stiffness times the way to the target (its mean over the step, or that at the end),
-/// damping times the mean velocity over the step. (beam.md 3.4)
-/// @param target  about the origin of the nodes' positions [m]
-/// @param step    [s]; 0: statics, in which nothing is damped
+/// Returns the action of a load's Pull on its point: stiffness times the vector to the target (mean over the step, or
+/// at the end), minus damping times the mean velocity over the step. (beam.md 3.4)
+/// @param target  relative to the origin of the nodes' positions [m]
+/// @param step    [s]; 0: statics, without damping
 PullAction pull_action(const NodalLoad& load, const Vector3& target, const NodePose& begin, const NodePose& end,
                        double step, LoadPoint point);
 

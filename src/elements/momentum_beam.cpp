@@ -10,13 +10,13 @@
 namespace flexarm {
 namespace {
 
-// ---------------------------------------------------------------- moments in space
+// ---------------------------------------------------------------- moments in world axes
 
-/// A = T(omega) Lambda_n or, by StressRule::CayleyMoment, S(w) Lambda_n, and d(A a) = derivative(a) * spin for constant
-/// material a; spin: of the section at the end.
+/// The map A from material moments to world axes: T(omega) Lambda_n or, for StressRule::CayleyMoment, S(w) Lambda_n.
+/// For constant material a, d(A a) = derivative(a) * spin of the section at the end.
 class MomentMap {
  public:
-  /// From the section's rotations at both ends of the step.
+  /// `begin`, `end`: rotations of the section at both ends of the step.
   MomentMap(StressRule rule, const Matrix3& begin, const Matrix3& end);
   const Matrix3& map() const { return map_; }
   Matrix3 derivative(const Vector3& material) const;
@@ -42,7 +42,7 @@ Matrix3 MomentMap::derivative(const Vector3& material) const {
 
 // ---------------------------------------------------------------- energy of the beta schemes (beam.md 3.3)
 
-/// {Delta r, w} of the nodes, tangent-scaled: the increments that joints map exactly.
+/// Returns {Delta r, w} of the nodes, with tangent-scaled w. The incremental maps of joints are exact for these.
 template <int Nodes>
 Eigen::Matrix<double, 6 * Nodes, 1> nodal_increments(const ElementNodes<Nodes>& nodes) {
   Eigen::Matrix<double, 6 * Nodes, 1> increment;
@@ -53,7 +53,7 @@ Eigen::Matrix<double, 6 * Nodes, 1> nodal_increments(const ElementNodes<Nodes>& 
   return increment;
 }
 
-/// Adds the change of strain energy of a stiffness point and its gradient, the internal forces at the end.
+/// Adds the change of strain energy of a stiffness point, and its gradient, which are the internal forces at the end.
 template <int Nodes>
 void add_strain_energy(const typename BeamElement<Nodes>::StiffnessPoint& constants, const PointKinematics& begin,
                        const PointKinematics& end, const GeneralisedShapeFunctions<Nodes>& generalised,
@@ -82,20 +82,20 @@ void add_kinetic_energy(const BeamElement<Nodes>& element, const ElementNodes<No
     }
 }
 
-/// Work of nodal forces {f_i, phi_i} along the increments {Delta r, w} of the nodes [J]; w is tangent-scaled.
+/// Returns the work of nodal forces {f_i, phi_i} along the nodal increments {Delta r, w} [J]; w is tangent-scaled.
 template <int Nodes>
 double work_of(const Eigen::Matrix<double, 6 * Nodes, 1>& forces, const ElementNodes<Nodes>& nodes) {
   return nodal_increments(nodes).dot(forces);
 }
 
-/// system += beta correction with the beta for which the nodal increments do the work energy.change on the sum, and the
-/// tangent of that (beam.md 3.3; eq. F.37-F.39 of Muñoz 2004 leave out G).
+/// Adds beta * correction to the system, with the beta for which the work of the total along the nodal increments is
+/// energy.change. Adds the tangent of this, too (beam.md 3.3; eq. F.37-F.39 of Muñoz 2004 leave out G).
 template <int Nodes>
 void correct_energy(const ElementNodes<Nodes>& nodes, const ElementEnergy<Nodes>& energy,
                     const ElementSystem<Nodes>& correction, bool with_tangent, ElementSystem<Nodes>& system) {
   const Eigen::Matrix<double, 6 * Nodes, 1> increment = nodal_increments(nodes);
   const double work = increment.dot(system.residual), denominator = increment.dot(correction.residual);
-  // The correction has no direction where the strain rests.
+  // Without a change of strain, the correction is zero and cannot do work.
   if (std::abs(denominator) <= 1e-14 * (std::abs(energy.change) + std::abs(work)) || denominator == 0) return;
   const double beta = (energy.change - work) / denominator;
   system.residual += beta * correction.residual;
@@ -120,12 +120,12 @@ struct Point {
   GeneralisedShapeFunctions<Nodes> generalised;
   Matrix3 average_rotation;  // (Lambda_n + Lambda_{n+1}) / 2
   Vector3 arm;               // r'_*: (r'_n + r'_{n+1}) / 2, or r'_n
-  double arm_weight;         // of the end in it
+  double arm_weight;         // weight of the end of the step in `arm`
 };
 
-/// Stress resultants' material values at a point, the map of the moment to space, and their derivatives.
+/// Material stress resultants at a point, the map of the moment to world axes, and their derivatives.
 struct StressState {
-  Vector6 stress, seen;                           // the latter by the geometric part of the tangent
+  Vector6 stress, seen;                           // `seen`: for the geometric part of the tangent
   Eigen::Matrix<double, 6, 9> stress_derivative;  // columns {dr', spin, spin'}
   Matrix3 moment_map;                             // A
   Matrix3 moment_derivative = Matrix3::Zero();    // d(A a) / d(spin) at constant material moment a
@@ -155,7 +155,7 @@ void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, con
                            system.tangent);
 }
 
-/// The stiffness points of an element over a step; those at the end go to `end`.
+/// Computes the stiffness points of an element over a step. `end`: output, the points at the end.
 template <int Nodes>
 void evaluate_points(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const PointKinematics* begin,
                      double arm_weight, bool with_variation,
@@ -174,7 +174,8 @@ void evaluate_points(const BeamElement<Nodes>& element, const ElementNodes<Nodes
   }
 }
 
-/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n.
+/// Adds translational inertia, (1/h) int I^i I^j mass ds (v_{n+1} - v_n), with
+/// v_{n+1} = factor Delta r / h - (factor - 1) v_n.
 template <int Nodes>
 void add_translational_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double factor,
                                double step, bool with_tangent, ElementSystem<Nodes>& system) {
@@ -184,7 +185,7 @@ void add_translational_inertia(const BeamElement<Nodes>& element, const ElementN
   add_translational<Nodes>(element.mass, force, factor / (step * step), with_tangent, system);
 }
 
-/// Mass-proportional damping by the mean velocity Delta r / h.
+/// Adds mass-proportional damping by the mean velocity Delta r / h.
 template <int Nodes>
 void add_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double step,
                       bool with_tangent, ElementSystem<Nodes>& system) {
@@ -200,7 +201,7 @@ void add_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Node
       system.dissipated += element.mass_damping * step * element.mass(i, j) * mean[i].dot(mean[j]);
 }
 
-/// The stress C (begin Sigma_n + end Sigma_{n+1}), or the forces N of it only.
+/// The stress C (begin Sigma_n + end Sigma_{n+1}), or only its forces N.
 struct StressWeights {
   double begin, end;
   bool forces_only = false;
@@ -268,13 +269,13 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
     system.residual += viscous.residual;
     system.carried += viscous.carried;
     system.tangent += viscous.tangent;
-    // The work on the nodes, not eta C (change of strain)^2 / h, which it is up to the order of the scheme.
+    // The actual work on the nodes. It equals eta C (change of strain)^2 / h only up to the order of the scheme.
     system.dissipated += work_of(viscous.residual, nodes);
   }
   add_mass_damping<Nodes>(element, nodes, step, with_tangent, system);
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(momentum_beam<Nodes>) momentum_beam<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

@@ -1,5 +1,5 @@
 #pragma once
-/// Newmark's rule over a step.
+/// Newmark's time integration rule.
 
 #include <cassert>
 
@@ -7,11 +7,12 @@
 
 namespace flexarm {
 
-/// Newmark's rule a_1 = (Delta x - h v_0 - (1/2 - beta) h^2 a_0) / (beta h^2), v_1 = v_0 + h ((1 - gamma) a_0 + gamma
-/// a_1), for translations and, with Delta x the material rotation increment, for rotations (Muñoz 2004, eq. 4.1-4.4).
+/// Newmark's rule over a step h (Muñoz 2004, eq. 4.1-4.4):
+///   a_1 = (Delta x - h v_0 - (1/2 - beta) h^2 a_0) / (beta h^2),   v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1),
+/// for translations and, with Delta x the material rotation increment, for rotations.
 struct NewmarkRule {
   double beta = 0.25, gamma = 0.5, step = 0;
-  double alpha = 0;  ///< strains are those at t_{n+1+alpha} (HHT3)
+  double alpha = 0;  ///< strains are taken at t_{n+1+alpha} (HHT3)
 
   Vector3 acceleration(const Vector3& increment, const Vector3& velocity, const Vector3& acceleration) const {
     assert(beta != 0 && step != 0);

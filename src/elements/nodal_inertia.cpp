@@ -68,8 +68,8 @@ NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& ru
   const Matrix3& begin = node.begin.rotation;
   const Matrix3& end = node.end.rotation;
   if (rule.is_incremental()) {
-    // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1
-    // Omega.
+    // The moment is D Omega / h, mapped to world axes by the mean rotation. Its work on the increment is
+    // Omega . D Omega / h >= 0, because Lambda_0 Omega = Lambda_1 Omega.
     const Vector3 Omega = begin.transpose() * node.increment, rate = D * Omega / node.step;
     const Matrix3 mean = 0.5 * (begin + end);
     action.residual.tail<3>() = mean * rate;

@@ -1,7 +1,7 @@
 #pragma once
-/// Beams over a step of the energy-momentum family in the plane: conserving_beam.h and conserving_tangent.h term by
-/// term, where they are not zero, as all rotations are about the normal. Then generalised shape functions are
-/// Lagrange's, and rotations are products of complex numbers. (docs/notes/planar.md)
+/// Planar beams over a step of the energy-momentum family. All rotations are about the normal of the plane. The terms
+/// are those of conserving_beam.h and conserving_tangent.h that are not zero. Generalised shape functions equal
+/// Lagrange functions, and rotations are like products of complex numbers. (docs/notes/planar.md)
 
 #include "elements/conserving_terms.h"
 #include "elements/planar_element.h"
@@ -10,7 +10,7 @@
 
 namespace flexarm::planar {
 
-/// n x v: a quarter turn.
+/// Returns n x v, with the normal n: v rotated by 90 degrees.
 template <typename S>
 inline Vector2T<S> quarter_turn(const Vector2T<S>& v) {
   return {-v[1], v[0]};
@@ -24,7 +24,7 @@ inline S dot(const Vector2T<S>& a, const Vector2T<S>& b) {
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/// A turn, or the mean of two, from the axes of the section to those of the plane.
+/// A rotation from the section's axes to those of the plane, or the mean of two such rotations.
 template <typename S>
 struct Turn {
   S cosine, sine;
@@ -55,8 +55,8 @@ inline Vector2T<S> force_of(const Vector3T<S>& resultants) {
   return {resultants[0], resultants[1]};
 }
 
-/// The stiffness points for given nodal positions and half angles. Angles are measured from the middle node, or one
-/// beside the middle; interpolated, they do not depend on which one it is.
+/// Computes the stiffness points for given nodal positions and half angles. Angles are measured relative to the middle
+/// node (or one of the two nodes next to the middle). The interpolated rotation does not depend on this choice.
 template <int Nodes, typename S>
 void set_points(const Element<Nodes, S>& element, const std::array<Vector2T<S>, Nodes>& position,
                 const std::array<S, Nodes>& cosine, const std::array<S, Nodes>& sine, PointKinematics<S>* points) {
@@ -107,10 +107,10 @@ struct Point {
 template <int Nodes, typename S>
 struct StepPoints {
   std::array<Point<S>, Nodes - 1> points;
-  S slope;  // of the derivatives of the middle functions, which are so many times Lagrange's
+  S slope;  // derivatives of the middle functions = slope * derivatives of the Lagrange functions
 };
 
-/// The averages of begin and end, and the conjugate strain s, of the point k.
+/// Sets the averages of begin and end, and the conjugate strain s, at the point k.
 template <int Nodes, typename S>
 void set_point_strains(const Element<Nodes, S>& element, int k, const Nodal<Nodes, S>& nodes,
                        const PointKinematics<S>& begin, const PointKinematics<S>& end, StepPoints<Nodes, S>& at) {
@@ -127,18 +127,20 @@ void set_point_strains(const Element<Nodes, S>& element, int k, const Nodal<Node
   p.own = PointStress<S>(constants.section, begin.strain, end.strain, conjugate);
 }
 
-/// What a variation {dr', spin, spin', dw, dw'} of a point makes of the strain at the end and of s.
+/// A variation {dr', spin, spin', dw, dw'} of a point.
 template <typename S>
 struct PointVariation {
   Vector2T<S> position;
   S spin, spin_derivative, increment, increment_derivative;
 };
+/// The changes of the strain at the end and of the conjugate strain s by a variation.
 template <typename S>
 struct StrainSlopes {
   Vector3T<S> end, conjugate;
 };
 
-/// Of the strain at one configuration, in which the section has turned so, with the tangent r'.
+/// Returns the change of the strain at one configuration by a variation. `turn`: rotation of the section; `tangent`:
+/// r'.
 template <typename S>
 Vector3T<S> strain_slope(const Turn<S>& turn, const Vector2T<S>& tangent, const Vector2T<S>& position, const S& spin,
                          const S& spin_derivative) {
@@ -156,14 +158,14 @@ StrainSlopes<S> strain_slopes(const Point<S>& p, const PointVariation<S>& v) {
           {conjugate[0], conjugate[1], v.increment_derivative}};
 }
 
-/// A linear form of a variation.
+/// A linear form of a variation: the coefficients of its components.
 template <typename S>
 struct PointForm {
   Vector2T<S> position;
   S spin, spin_derivative, increment, increment_derivative;
 };
 
-/// The form `conjugate`.ds + `end`.d(strain at the end) (beyond.md 1.3).
+/// Returns the linear form `conjugate` . ds + `end` . d(strain at the end) (beyond.md 1.3).
 template <typename S>
 PointForm<S> strain_form(const Point<S>& p, const Vector3T<S>& conjugate, const Vector3T<S>& end) {
   const Vector2T<S> force = p.average.to_plane(force_of<S>(conjugate)),
@@ -209,7 +211,8 @@ struct EnergyMultiplier : conserving::MultiplierWork<Nodes, S, Vector3T<S>> {
     this->add_defect(weight, stiffness, defect, p);
   }
 
-  /// `work_row`: d(work) for {dr, spin} of the nodes; `rate`: of their increments per spin.
+  /// Adds the tangent of add_moments(). `work_row`: derivative of the work with respect to {dr, spin} of the nodes;
+  /// `rate`: derivative of their increments with respect to the spins.
   void add_tangent(const std::array<Vector3T<S>, Nodes>& work_row, const std::array<S, Nodes>& rate,
                    BlockSystem<Nodes, S>& system) const {
     const S by_work = this->slope(), mu = seen_work * by_work;
@@ -226,7 +229,8 @@ struct EnergyMultiplier : conserving::MultiplierWork<Nodes, S, Vector3T<S>> {
   }
 };
 
-/// {dn, dm} of a variation of the strain at the end by `end` and of s by `conjugate`; n is not turned.
+/// Returns the change {dn, dm} of the weighted resultants if the strain at the end changes by `end` and s by
+/// `conjugate`, at constant rotation.
 template <int Nodes, typename S>
 Vector3T<S> resultant_slope(const typename Element<Nodes, S>::Point& constants, bool is_uneven, const Point<S>& p,
                             const Vector3T<S>& end, const Vector3T<S>& conjugate) {
@@ -237,8 +241,8 @@ Vector3T<S> resultant_slope(const typename Element<Nodes, S>::Point& constants, 
   return {force[0], force[1], stress[2]};
 }
 
-/// Adds the tangent of add_resultants(): `position`, `turns` are {dn, dm} of variations of dr' and of the nodes' spins,
-/// `couple` d(arm x n) of dr'.
+/// Adds the tangent of add_resultants(). `position` and `turns` are {dn, dm} for unit dr' and for unit spins of the
+/// nodes; `couple` is d(arm x n) for unit dr'.
 template <int Nodes, typename S>
 [[gnu::always_inline]] inline void add_point_tangent(const typename Element<Nodes, S>::Point& constants, const S& slope,
                                                      const Vector2T<S>& arm, const std::array<Vector3T<S>, 2>& position,
@@ -300,7 +304,7 @@ void add_tangent(const Element<Nodes, S>& element, const Nodal<Nodes, S>& nodes,
                       turned = S(0.5) * quarter_turn<S>(p.end.to_plane(force));
     spin[0] += turned[0];
     spin[1] += turned[1];
-    // d(arm x n), of which the arm varies by half of dr'.
+    // d(arm x n), in which the arm varies by dr' / 2.
     const std::array<S, 2> couple = {cross<S>(p.arm, force_of<S>(position[0])) + S(0.5) * n[1],
                                      cross<S>(p.arm, force_of<S>(position[1])) - S(0.5) * n[0]};
     std::array<Vector3T<S>, Nodes> turns;
@@ -321,8 +325,8 @@ void add_tangent(const Element<Nodes, S>& element, const Nodal<Nodes, S>& nodes,
   if (is_corrected) multiplier.add_tangent(work_row, rate, system);
 }
 
-/// Forces of an element over a step, with the tangent where it is asked for; `end` receives the points at t_{n+1}. See
-/// conserving::set_forces() for the others.
+/// Computes the forces of an element over a step, and the tangent if `with_tangent`. `slope`: see StepPoints. `end`:
+/// output, the points at t_{n+1}. For the other parameters see conserving::set_forces().
 template <int Nodes, typename S>
 void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
           const PointKinematics<S>* begin, const StrainMemory<S>* memory, double step, bool with_tangent,
@@ -338,7 +342,7 @@ void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S
   if (with_tangent) add_tangent<Nodes, S>(element, nodes, rule, at, multiplier, system);
 }
 
-/// See conserving::carry_strains. `update`: {dx, dy, spin} of the nodes.
+/// See conserving::carry_strains(). `update`: {dx, dy, spin} of the nodes.
 template <int Nodes, typename S>
 void carry_strains(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes,
                    const PointKinematics<S>* begin, const std::array<Vector3T<S>, Nodes>& update,

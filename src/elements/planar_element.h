@@ -1,6 +1,6 @@
 #pragma once
-/// What the planar kernel of the energy-momentum family reads and writes, for one element (S = double) or a pack of
-/// them: conserving_element.h with two translations and a turn for each node. (docs/notes/planar.md)
+/// Input and output of the planar beam kernel of the energy-momentum family, for one element (S = double) or a pack of
+/// elements. Like conserving_element.h, with two translations and one rotation for each node. (docs/notes/planar.md)
 
 #include <array>
 
@@ -15,7 +15,8 @@ namespace flexarm::planar {
 template <typename S>
 using Vector2T = Eigen::Matrix<S, 2, 1>;
 
-/// Symmetric stiffness of {N_1, N_2, M} = C {Gamma_1, Gamma_2, K}, axes of the plane as the section has them.
+/// Symmetric stiffness of a section: {N_1, N_2, M} = C {Gamma_1, Gamma_2, K}. The axes 1 and 2 are those of the plane
+/// at the reference orientation of the section (PlaneOfMotion::strain_basis).
 template <typename S>
 struct SectionStiffness {
   Matrix3T<S> matrix;
@@ -23,7 +24,7 @@ struct SectionStiffness {
   Vector3T<S> stress(const Vector3T<S>& strain) const { return matrix * strain; }
 };
 
-/// Constant data; units as in BeamElement.
+/// Constant data of an element; units as in BeamElement.
 template <int Nodes, typename S = double>
 struct Element {
   struct Point {
@@ -41,7 +42,7 @@ struct Element {
   const SectionStiffness<S>& damped_section(int point) const { return points[point].damped; }
 };
 
-/// Makes an element a lane. `basis`: PlaneOfMotion::strain_basis of its nodes.
+/// Writes an element into a lane of a pack. `basis`: PlaneOfMotion::strain_basis of its nodes.
 template <int Nodes, typename S>
 void set_lane(Element<Nodes, S>& pack, int lane, const BeamElement<Nodes>& element,
               const Eigen::Matrix<double, 6, 3>& basis) {
@@ -57,7 +58,7 @@ void set_lane(Element<Nodes, S>& pack, int lane, const BeamElement<Nodes>& eleme
   set_mass_and_damping_lane(pack, lane, element);
 }
 
-/// Nodal motion over a step.
+/// The motion of an element's nodes over a step.
 template <int Nodes, typename S = double>
 struct Nodal {
   std::array<Vector2T<S>, Nodes> begin, end;  ///< positions [m]
@@ -81,8 +82,8 @@ struct CarriedStrains {
   bool has_conjugate = false;
 };
 
-/// Residual {f_1, f_2, phi} of each node, and its tangent: block (i, j) is the derivative with respect to node j's
-/// {dx, dy, spin}. A fourth row of zeros fills the register.
+/// Residual {f_1, f_2, phi} of each node, and its tangent: block (i, j) is the derivative of node i's residual with
+/// respect to node j's {dx, dy, spin}. A fourth row of zeros fills the register. `carried`: see flexarm::BlockSystem.
 template <int Nodes, typename S = double>
 struct BlockSystem {
   std::array<Eigen::Matrix<S, 4, 1>, Nodes> residual, carried;

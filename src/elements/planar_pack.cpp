@@ -31,7 +31,7 @@ void carry_strains(const Element<Nodes, Pack>& element, const Pack& slope, const
   simd::run([&] { planar::carry_strains<Nodes, Pack>(element, slope, nodes, begin, update, end, carried); });
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes)                                        \
   template decltype(element_points<Nodes>) element_points<Nodes>; \
   template decltype(beam<Nodes>) beam<Nodes>;                     \

@@ -1,6 +1,6 @@
 #pragma once
-/// The kernels of planar_beam.h on packs, compiled once for each order and run with the widest registers of the
-/// processor at hand. `Nodes`: 2 to 5.
+/// The kernels of planar_beam.h for packs of elements. They are compiled once for each order of elements and use the
+/// widest registers of the processor (math/simd.h). `Nodes`: 2 to 5.
 
 #include "elements/planar_element.h"
 #include "schemes/time_rule.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// A spring along the line between two points, with a damper beside it.
+/// A spring between two points, with a damper in parallel.
 
 #include "elements/line_element.h"
 
@@ -20,8 +20,8 @@ class PointSpring : public LineElement {
   std::string description() const override;
 
  private:
-  /// Of means: stiffness times (the mean length - rest length), whose work is exactly the change of the energy,
-  /// stiffness (length - rest length)^2 / 2; and damping times the mean rate.
+  /// Returns stiffness * (length - rest length) + damping * rate. With means over the step, length is the mean of both
+  /// ends. The work of the elastic part is then exactly the change of the elastic energy.
   LineTension tension(const CoordinateStep& change) const override;
   double energy(double length) const override;
   LineTension elastic(double length) const override;

@@ -67,7 +67,7 @@ RotaryRate momentum_rotary_rate(const Matrix3& inertia, const Matrix3& begin, co
   return rate;
 }
 
-// Compiled here once for each order of elements.
+// Explicit instantiations for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(add_rotary_rate<Nodes>) add_rotary_rate<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

@@ -1,4 +1,5 @@
-/// When in a step what acts on coordinates changes. (docs/notes/accuracy.md 4)
+/// The event search of Actuators: when motors, gears and their friction change the equations within a step.
+/// (docs/notes/accuracy.md 4)
 
 #include "integrators/actuators.h"
 #include "joints/joint_forces.h"
@@ -6,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// Of a step, by which instants are taken inside it: functions of time may jump at its ends.
+/// Functions of time may jump at the ends of a step. So they are evaluated this fraction of the step inside of it.
 constexpr double kInside = 1e-6;
 
 }  // namespace
@@ -69,7 +70,7 @@ void Actuators::note_limits(std::size_t index, FirstEvent& first) const {
   note(at_begin - begin.lowest, at_end - end.lowest);
 }
 
-/// At the beginning of the step (0) or at its end (1).
+/// The effort that is demanded from the motor at the beginning of the step (`end` = 0) or at its end (1).
 double Actuators::demand_at(std::size_t index, int end) const {
   const Model& model = configuration_.model();
   const Actuator& actuator = model.actuators[index];
@@ -81,7 +82,7 @@ double Actuators::demand_at(std::size_t index, int end) const {
   const double of_scene = coordinate.effort < 0 ? 0 : model.histories[coordinate.effort](instant);
   const double effort = applied_effort(coordinate, commanded, of_scene);
   if (!actuator.servo) return effort;
-  if (actuator.servo->sample_time > 0) return part.action.demand;  // but for the effort it is held
+  if (actuator.servo->sample_time > 0) return part.action.demand;  // constant over the step, except for `effort`
   const Servo& servo = *actuator.servo;
   const ServoState& state = configuration_.state().actuators[index].servo;
   const ServoLaw& law = law_of(servo, state);
@@ -97,7 +98,7 @@ double Actuators::demand_at(std::size_t index, int end) const {
   return effort + servo_effort(law, at);
 }
 
-/// The set point and its rate, by the parabola through three instants of the step.
+/// Sets the set point at an end of the step and its rate, from a parabola through three instants of the step.
 void Actuators::set_point_at(const Servo& servo, const ServoState& state, int end, ServoInstant& at) const {
   const double begin = configuration_.state().time, step = configuration_.step();
   const bool is_commanded = !std::isnan(state.set_point);

@@ -11,9 +11,9 @@
 namespace flexarm {
 namespace {
 
-/// Way of a rotor over a step below which it is taken to be at rest [rad or m].
+/// A rotor that moves by less than this over a step counts as being at rest [rad or m].
 constexpr double kAtRest = 1e-12;
-/// Of a step, by which its end may miss a time: it is a sum.
+/// Fraction of a step by which its end, a sum of steps, may miss a given time because of round-off.
 constexpr double kRoundOff = 1e-6;
 
 }  // namespace
@@ -39,10 +39,11 @@ Actuators::Actuators(StepConfiguration& configuration, const StepHistories& hist
 void Actuators::check(const Actuator& actuator) const {
   const Scheme& scheme = configuration_.scheme();
   const std::string joint = " of joint '" + configuration_.model().coordinates[actuator.coordinate].name + "'";
-  const std::string backwards = "<integrator>: scheme '" + std::string(scheme.name) + "' steps backwards, in which ";
+  const std::string backwards =
+      "<integrator>: scheme '" + std::string(scheme.name) + "' also steps backwards in time, where ";
   if (scheme.is_composition && actuator.drive.sticks)
     throw ModelError(backwards + "friction of the law 'coulomb' (<drive>" + joint +
-                     ") would drive; take another scheme or the law 'smooth'");
+                     ") would add energy; take another scheme or the law 'smooth'");
   if (actuator.gyroscope && !scheme.is_incremental() && !scheme.is_static)
     throw ModelError("<integrator>: scheme '" + std::string(scheme.name) +
                      "' has no gyroscopic effect of rotors (axis of <drive>" + joint +
@@ -73,8 +74,8 @@ RotorStep Actuators::rotor_step(const Actuator& actuator, const ActuatorState& s
   const double offset = -(rate / (scheme.beta * h) + (0.5 / scheme.beta - 1) * acceleration);
   out.rate_offset = rate + h * ((1 - scheme.gamma) * acceleration + scheme.gamma * offset);
   out.rate_slope = h * scheme.gamma * slope;
-  // Rows are balances at the end of the step, from which accelerations of the Hilber-Hughes-Taylor family lie back:
-  // Wood, Bossak and Zienkiewicz' mean.
+  // The balance holds at the end of the step. In the Hilber-Hughes-Taylor family the accelerations belong to an earlier
+  // instant. So inertia takes the mean of Wood, Bossak and Zienkiewicz.
   const double weight = 1 / configuration_.effort_weight();
   out.acceleration_offset = weight * offset + (1 - weight) * acceleration;
   out.acceleration_slope = weight * slope;
@@ -96,7 +97,7 @@ void Actuators::begin() {
       part.demand.surplus = effort.acting - effort.at_end;
     }
     if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
-    if (state.servo.off > 0) part.demand = {0, 0, 0, 0, 0};  // it goes on measuring
+    if (state.servo.off > 0) part.demand = {0, 0, 0, 0, 0};  // a servo that is off still measures
     part.action = {};
     part.action.increment = configuration_.step() * state.rate;
   }
@@ -125,7 +126,7 @@ SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const
   out.mean = histories_.of_servo(servo.set_point).mean;
   out.acting = histories_.of_servo(servo.set_point).acting;
   if (scheme.is_incremental() || law_of(servo, state).mode != ServoMode::Position) return out;
-  // A jump of the set point is an impulse of its rate.
+  // If the set point jumps, its rate is an impulse.
   out.rate_at_end = history.derivative(end);
   const double mean_rate = (out.end - out.begin) / configuration_.step();
   out.acting_rate = out.rate_at_end + mean_rate - 0.5 * (history.derivative(begin) + out.rate_at_end);
@@ -159,7 +160,8 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
   }
   input.set_point = set_point(servo, state.servo);
   if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.of_servo(servo.feedforward).acting;
-  // Sub-steps of a composition cancel each other's errors if all take the same rule.
+  // In a composition, the errors of the sub-steps cancel only if all sub-steps use the same rule. So there is no
+  // relaxation.
   if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static)
     input.relaxation = std::min(scheme.contact_time / kContactSteps, configuration_.step());
   return input;
@@ -178,7 +180,7 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
     const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period
                                     : rate_of_command(state.servo, time - 0.5 * period);
     part.servo = state.servo;
-    // What is sampled is the value at the beginning.
+    // A sampled servo takes the value at the beginning of the step.
     if (servo.feedforward >= 0) part.input.feedforward = configuration_.model().histories[servo.feedforward](time);
     sample(servo, part.input, set_rate, part.servo);
     part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
@@ -210,7 +212,7 @@ void Actuators::turn_carrier(const Gyroscope& gyroscope, Part& part) const {
   part.carried_by_spin = cayley::inverse_tangent(increment).transpose() * axis / gyroscope.ratio;
 }
 
-/// The rotor's momentum p about the axis a changes the carrier's by (p_1 a_1 - p_0 a_0)/h.
+/// A rotor with the momentum p about the axis a changes the momentum of its carrier by (p_1 a_1 - p_0 a_0)/h.
 void Actuators::add_moment(const Gyroscope& gyroscope, const ActuatorState& state, Part& part, Balance& balance) const {
   const double h = configuration_.step(), inertia = gyroscope.inertia * gyroscope.ratio;
   const Vector3 begin = configuration_.begin()[gyroscope.node].rotation * gyroscope.axis;

@@ -1,17 +1,18 @@
 #pragma once
-/// The balance of a step.
+/// The residual and tangent of a step, while the parts of the step add to them.
 
 #include "solver/reduced_residual.h"
 
 namespace flexarm {
 
-/// Where the parts of a step put what they contribute.
+/// The targets to which the parts of a step add their contributions.
 struct Balance {
   ReducedResidual& residual;
-  TangentBackend* tangent;  ///< null where only the residual is asked for
-  /// What carried stresses would add to the residual, for the geometric parts of the tangent; null: nothing.
+  TangentBackend* tangent;  ///< null if only the residual is evaluated
+  /// Difference that carried stresses would make to the residual; the geometric parts of the tangent use it
+  /// (docs/notes/newton.md). Null: no stresses are carried.
   ReducedResidual* carried = nullptr;
-  double dissipated = 0;  ///< energy that has left over the step [J]
+  double dissipated = 0;  ///< energy dissipated over the step [J]
 };
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// All beams of a model over a step: one part of the step for each family of schemes.
+/// Interface for all beams of a model over a step. Each family of schemes has its own implementation.
 
 #include <memory>
 
@@ -9,41 +9,41 @@
 
 namespace flexarm {
 
-/// Forces and inertia of beams. One call is for all elements.
+/// Forces and inertia of beams. Each call handles all elements.
 class BeamFamily {
  public:
   virtual ~BeamFamily() = default;
 
-  /// Adds to an initial state what the family keeps there.
+  /// Adds the data that the family keeps in the state to an initial state.
   virtual void initialise(State&) {}
-  /// See RotationReference.
+  /// See RotationReference::forget_path().
   virtual void forget_path(State&) {}
-  /// The configuration's step has begun.
+  /// Starts a step. The configuration must have begun it.
   virtual void begin() = 0;
-  /// Internal forces and damping; in families that have their inertia at the same points, that as well.
+  /// Adds internal forces and damping, in some families also inertia: if it is evaluated at the same points.
   virtual void add_forces(Balance& balance) = 0;
-  /// What add_forces() leaves, once all forces are in the balance.
+  /// Adds the inertia that add_forces() does not. Called when all forces are in the balance.
   virtual void add_inertia(Balance&) {}
-  /// After a tangent, before its solution moves the nodes, {dr, spin} in `update`, 6 numbers each: carries the stresses
-  /// along for the next tangent (docs/notes/newton.md).
+  /// Updates the carried strains for the next tangent (docs/notes/newton.md). To be called after a tangent was
+  /// factorised, and before its solution moves the nodes. The argument is the update {dr, spin}, 6 numbers per node.
   virtual void carry_strains(const double*) {}
-  /// Whether the geometric part of the next tangent sees other stresses than the residual.
+  /// Whether the geometric part of the next tangent uses other stresses than the residual.
   virtual bool carries_strains() const { return false; }
-  /// Work of prestrains that change over the step, in the trial configuration that was evaluated last [J].
+  /// Work of prestrains that change over the step, in the trial configuration of the last evaluation [J].
   virtual double work_of_prestrains() const = 0;
-  /// Writes what the family keeps of the trial configuration, evaluated last, into the state.
+  /// Writes the family's data of the trial configuration, which was evaluated last, into the state.
   virtual void accept(State& state) = 0;
-  /// The state was changed by somebody else: what was kept from the last step does not hold.
+  /// Discards data kept from the last step. To be called after the state was changed by something other than a step.
   virtual void invalidate() = 0;
-  /// Per node, of the trial configuration: rotation vectors from the undeformed state, where the scheme keeps them.
+  /// Per node, in the trial configuration: rotation vectors from the undeformed state. Empty if the scheme has none.
   virtual const std::vector<Vector3>& total_rotations() const;
-  /// To be set before the first step where forces are interpolated in time.
+  /// To be called before the first step of a scheme that interpolates forces in time.
   virtual void set_interpolation(HhtInterpolation*) {}
-  /// Whether add_forces() heeds TangentBackend::condensation().
+  /// Whether add_forces() supports TangentBackend::condensation().
   virtual bool evaluates_packs() const { return false; }
 };
 
-/// The family of the configuration's scheme.
+/// Creates the family of the configuration's scheme.
 std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
 }  // namespace flexarm

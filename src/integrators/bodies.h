@@ -1,5 +1,5 @@
 #pragma once
-/// Inertia of rigid bodies, and inertia of beams that is lumped at nodes, over a step.
+/// Inertia of rigid bodies and lumped inertia of beams, at the nodes, over a step.
 
 #include <vector>
 
@@ -13,7 +13,7 @@ class Bodies {
  public:
   explicit Bodies(const StepConfiguration& configuration);
 
-  /// Writes the nodes' momentum rates of the configuration at the beginning; Hilber-Hughes-Taylor family.
+  /// Hilber-Hughes-Taylor family: writes the momentum rates of the nodes at the beginning into the state.
   void initialise(State& state) const;
   void evaluate(Balance& balance);
   /// Writes the nodes' motion at the end of the step.

@@ -11,13 +11,13 @@
 namespace flexarm {
 namespace {
 
-/// Packs of elements of one order.
+/// Groups elements of one order into packs.
 template <int Nodes>
 PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements) {
   constexpr int lanes = Pack::kLanes;
   const int count = static_cast<int>(elements.size());
   PackGroup<Nodes> packs((count + lanes - 1) / lanes);
-  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  // The whole group has the same terms, so that the results of an element do not depend on its neighbours in the pack.
   bool is_uniform = true, is_coupled = false, is_damped_evenly = true;
   bool has_stiffness_damping = false, has_mass_damping = false;
   for (std::size_t p = 0; p < packs.size(); ++p) {
@@ -47,7 +47,7 @@ PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements) {
   return packs;
 }
 
-/// Where a pack is evaluated: the condensation's own system, where there is one.
+/// The system in which a pack is evaluated: that of the condensation if there is one.
 template <int Nodes>
 BlockSystem<Nodes, Pack>& system_of(std::size_t pack, InteriorCondensation* condensation,
                                     BlockSystem<Nodes, Pack>& scattered) {
@@ -94,7 +94,7 @@ void ConservingBeams::begin() {
   carries_strains_ = configuration_.model().stiffness_point_count > 0;
 }
 
-/// They are a part of the packs' reference strains.
+/// Adds the prestrains to the reference strains of the packs.
 void ConservingBeams::set_prestrains() {
   for_each_group(configuration_.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group)>::kNodes;
@@ -129,7 +129,7 @@ void ConservingBeams::accept(State& state) {
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
   const StepMotion step = configuration_.motion();
   for (std::size_t i = 0; i < state.nodes.size(); ++i) state.nodes[i].mean_spin = step.increments[i] / step.step;
-  begin_ = 1 - begin_;  // the points of the end are those at the beginning of the next step
+  begin_ = 1 - begin_;  // points at the end of this step are points at the beginning of the next one
 }
 
 template <int Nodes>
@@ -209,10 +209,12 @@ void ConservingBeams::set_begin_points() {
   });
 }
 
-/// Test functions for the middle of the step, foreseen as if it went on like the last one.
+/// Sets the test functions for the middle of the step, which is predicted from the motion of the last step.
 void ConservingBeams::set_mid_functions() {
   const StepMotion step = configuration_.motion();
-  // Explicit, so that the tangent stays simple. Where they are to be averaged with those of the end: the beginning.
+  // MidFunctions::Explicit uses predicted functions, which do not depend on the unknowns, so that the tangent stays
+  // simple. MidFunctions::Symmetric averages the functions of both ends; here, these are the functions at the
+  // beginning.
   const Pack foreseen_time(rule_.mid_functions == MidFunctions::Explicit ? step.step : 0.0);
   const bool is_stretched = rule_.correction == EnergyCorrection::Multiplier;
   for_each_group(groups_, [&](auto& packs) {
@@ -258,7 +260,7 @@ void ConservingBeams::add_forces(Balance& balance) {
   const StepMotion step = configuration_.motion();
   double dissipated = 0;
   for_each_group(groups_, [&](auto& packs) {
-    if (packs.empty()) return;  // not even memories are made
+    if (packs.empty()) return;  // saves the construction of the arrays below
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     InteriorCondensation* condensation = N > 2 && balance.tangent ? balance.tangent->condensation() : nullptr;
     simd::run([&] {

@@ -10,7 +10,7 @@
 
 namespace flexarm {
 
-/// Elements side by side; the last one fills what the group leaves of its last pack.
+/// Elements side by side in the lanes of a pack. If elements do not fill the last pack, copies of the last one do.
 template <int Nodes>
 struct ElementPack {
   static constexpr int kNodes = Nodes;
@@ -63,12 +63,12 @@ class ConservingBeams : public BeamFamily {
   bool has_memory_ = false;               // numerical dissipation or structural damping keep State::strain_memory
   std::vector<StrainMemory> end_memory_;  // per stiffness point, where has_memory_
   bool carries_strains_ = false;
-  int begin_ = 0;                    // which of ElementPack::points
-  bool holds_begin_points_ = false;  // from the last step
+  int begin_ = 0;                    // index into ElementPack::points of the points at the beginning
+  bool holds_begin_points_ = false;  // whether these points are known from the last step
 };
 
-/// What numerical dissipation and structural damping remember at the start of a motion. Per stiffness point: the strain
-/// rates that the velocities of `state` mean [1/s, 1/(m s)].
+/// Initial memory of numerical dissipation and structural damping, per stiffness point: the strain rates that follow
+/// from the velocities of `state` [1/s, 1/(m s)].
 std::vector<StrainMemory> initial_strain_memory(const Model& model, const State& state);
 
 }  // namespace flexarm

@@ -13,14 +13,15 @@ namespace flexarm {
 
 class ConservingNodes {
  public:
-  /// Empty unless the rule is one of the family, all of which turn bodies by tangent-scaled increments.
+  /// Empty unless the rule is one of the energy-momentum family. All rules of that family rotate bodies by
+  /// tangent-scaled increments.
   ConservingNodes(const Model& model, const TimeRule& rule);
 
-  /// Adds the rates of momentum.
+  /// Adds the rates of momentum to the balance.
   void add(const StepMotion& step, Balance& balance) const;
 
  private:
-  /// Nodes side by side; the last one fills what the model leaves of its last pack.
+  /// Nodes side by side in the lanes of a pack. If nodes do not fill the last pack, copies of the last one do.
   struct NodePack {
     int lanes = 0;  // in use
     std::array<int, Pack::kLanes> nodes;

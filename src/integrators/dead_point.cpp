@@ -8,8 +8,8 @@
 namespace flexarm {
 namespace {
 
-/// A constraint depends on the others if less than this part of it is left while they hold, relative to the largest
-/// constraint.
+/// A constraint counts as dependent on other constraints if they leave less than this part of it, relative to the
+/// largest constraint.
 constexpr double kDependent = 0.01;
 
 std::vector<int> closure_of_rows(const Model& model) {
@@ -19,8 +19,8 @@ std::vector<int> closure_of_rows(const Model& model) {
   return closures;
 }
 
-/// The first closure of a model without implied constraints that has one which depends on others, at the start; -1:
-/// none.
+/// In the initial configuration of a model without implied constraints: the first closure with a constraint that
+/// depends on others. -1 if there is none.
 int dependent_closure(const Model& model, const DegreesOfFreedom& dof) {
   std::vector<bool> is_free(dof.scalar_count);
   for (int i = 0; i < dof.scalar_count; ++i) is_free[i] = dof.equation[i] >= 0;
@@ -40,7 +40,7 @@ int closure_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const
   if (model.closures.empty()) return -1;
   Model moved = model;
   for (LoopClosure& closure : moved.closures) closure.implied.clear();
-  if (dependent_closure(moved, dof) >= 0) return -1;  // it is nearly so by its dimensions
+  if (dependent_closure(moved, dof) >= 0) return -1;  // the dimensions make the loop nearly singular from the start
   for (std::size_t i = 0; i < moved.nodes.size(); ++i) moved.nodes[i] = node_pose(state.nodes[i]);
   moved.initial_released = state.released;
   return dependent_closure(moved, dof);

@@ -1,5 +1,5 @@
 #pragma once
-/// Dead points: loops whose constraints block each other.
+/// Finds dead points: configurations in which the constraints of a loop block each other.
 
 #include "model/degrees_of_freedom.h"
 #include "model/model.h"
@@ -7,9 +7,10 @@
 
 namespace flexarm {
 
-/// Index of a closure that is at a dead point in the configuration of `state`: its constraints, independent at the
-/// start, are no longer so with respect to what is free to move, or some joint of the loop has to turn a hundred times
-/// faster than others for them. -1: none. Allocates, and takes its time.
+/// Index of a closure that is at a dead point in the configuration of `state`. At a dead point, constraints that are
+/// independent in the initial configuration become dependent with respect to the free coordinates. Or they nearly do: a
+/// joint of the loop would have to move a hundred times faster than others. -1 if there is none. Slow; allocates
+/// memory.
 int closure_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const State& state);
 
 }  // namespace flexarm

@@ -1,15 +1,15 @@
 #pragma once
-/// The wall time at which a step must end.
+/// A limit for the wall time of a step.
 
 #include <cassert>
 #include <chrono>
 
 namespace flexarm {
 
-/// The wall time that a step may take, for all schemes that try it. It starts when this object is made.
+/// The wall time that all attempts at a step may take together. It starts when this object is constructed.
 class Deadline {
  public:
-  /// @param seconds  after which it has passed [s]; 0: it never does
+  /// @param seconds  duration [s]; 0: unlimited
   explicit Deadline(double seconds) : seconds_(seconds) {
     assert(seconds >= 0);
     if (seconds_ > 0) begin_ = Clock::now();

@@ -12,14 +12,14 @@ namespace {
 Scheme dissipative_scheme(const Scheme& scheme, double step) {
   Scheme out = *find_scheme("edmc2");
   out.dissipation = numerical_dissipation(out.order, kDefaultRho, step);
-  // The same dampers and stops as those of the scheme.
+  // Dampers and stops have the same constants as in the scheme that is replaced.
   out.damping_relaxation = scheme.damping_relaxation;
   out.contact_time = scheme.contact_time;
   out.may_be_planar = scheme.may_be_planar;
   return out;
 }
 
-/// It must not have a substitute of its own.
+/// Settings for the stepper of the substitute, which must not have a substitute itself.
 StepSettings without_substitute(StepSettings settings) {
   settings.on_failure = OnFailure::Stop;
   return settings;

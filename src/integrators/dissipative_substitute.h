@@ -1,14 +1,14 @@
 #pragma once
-/// Uses edmc2 for the steps that another scheme cannot do.
+/// Repeats failed steps of another scheme with the dissipative scheme edmc2.
 
 #include "integrators/stepper.h"
 
 namespace flexarm {
 
-/// Takes the place of a scheme of the energy-momentum family for a step; their states are the same but for the memory
-/// that numerical dissipation has. The memory begins as it does at the start of a motion, and is forgotten after the
-/// step. What it holds of energy then, which is of second order in the step, counts as dissipated, less what it held at
-/// the beginning: the account of the scheme stays exact.
+/// Replaces a scheme of the energy-momentum family for one step. The states of the two schemes differ only in the
+/// memory of numerical dissipation. This memory is initialised as at the start of a motion, and dropped after the step.
+/// Its energy is of second order in the step. The change of this energy over the step counts as dissipated, so that the
+/// energy balance of the replaced scheme stays exact.
 class DissipativeSubstitute {
  public:
   /// The model must outlive the substitute.
@@ -17,10 +17,10 @@ class DissipativeSubstitute {
   /// See Stepper.
   void set_step(double step) { stepper_.set_step(step); }
   void set_tolerance(double tolerance) { stepper_.set_tolerance(tolerance); }
-  /// A step may come that fails: the state at its beginning.
+  /// Stores the state at the beginning of a step that may fail.
   void keep(const State& state) { begin_ = state; }
-  /// Does the step from the state that was kept, in what is left of its time. On failure `state` is left alone. The
-  /// effort is added to `result`.
+  /// Does the step from the stored state within the remaining time. Leaves `state` unchanged if that fails. Adds
+  /// iterations and halvings to `result`.
   bool advance(State& state, const Deadline& deadline, StepResult& result);
 
  private:

@@ -1,23 +1,24 @@
 #pragma once
-/// What slows a mechanism down on its way to an equilibrium.
+/// Artificial resistance that slows a mechanism down on its way to an equilibrium.
 
 #include "integrators/balance.h"
 #include "integrators/step_configuration.h"
 
 namespace flexarm {
 
-/// Springs without memory that draw every node back to where the step began: with them, equilibria are implicit Euler
-/// steps of a motion through a fluid so thick that nothing has inertia. In statics alone.
+/// Springs that pull every node back to its position and orientation at the beginning of the step. With them, a search
+/// for an equilibrium becomes implicit Euler steps of a motion through a very viscous fluid, without inertia. Only for
+/// statics.
 class Drag {
  public:
   explicit Drag(const StepConfiguration& configuration) : configuration_(configuration) {}
 
-  /// Against a displacement by the model's length scale, and a turn by one rad [J]; 0: there is none.
+  /// Stiffness [J], for displacements divided by the model's length scale and rotations in rad; 0: no drag.
   double strength = 0;
 
   void evaluate(Balance& balance) const;
-  /// The largest of all nodes' displacements, over the model's length scale, and turns over the step [rad]; half a turn
-  /// is infinite.
+  /// The largest motion of a node over the step: displacement divided by the model's length scale, or rotation in rad
+  /// (infinite for half a turn, since rotations are tangent-scaled).
   double largest_way() const;
 
  private:

@@ -10,14 +10,17 @@
 namespace flexarm {
 namespace {
 
-/// Increments over a step below which a coordinate is taken to be at rest, relative to the model's length or to 1 rad.
+/// A coordinate with a smaller increment over a step counts as being at rest; relative to the model's length or to 1
+/// rad.
 constexpr double kAtRest = 1e-12;
-/// Part of the capacity by which efforts at rest may exceed it: round-off, and where branches do not settle.
+/// An effort at rest may exceed the capacity by this part of it: round-off, and a looser value if branches do not
+/// settle.
 constexpr double kSlack = 1e-10, kLooseSlack = 1e-6;
-/// Revisions in a solve after which only one coordinate is revised at a time, and after which slack is loose.
+/// After this many revisions in a solve only one coordinate is revised at a time, or the loose slack is used.
 constexpr int kRevisionsAtOnce = 4, kTightRevisions = 10;
-/// What a deceleration may foresee too late, over the time until a coordinate stops; and of that time, what a step
-/// takes in which it still slides.
+/// For a stop that occurs within a step. The prediction of its time is accepted up to the first multiple of the step,
+/// since it is not exact. The step is then cut to the second fraction of this time, so that the coordinate still
+/// slides.
 constexpr double kMostForeseen = 1.1, kShortOfStop = 0.98;
 
 Contact contact_of(const JointMap& joint) {
@@ -25,7 +28,7 @@ Contact contact_of(const JointMap& joint) {
   return joint.translation.isZero(0) ? Contact::Turn : Contact::Both;
 }
 
-/// Of increments: 1 rad, or the model's length.
+/// Scale of a coordinate's increments: 1 rad, or the model's length scale.
 double scale_of(const Model& model, const Coordinate& coordinate) {
   return is_rotation(model, coordinate) ? 1.0 : model.length_scale;
 }
@@ -45,14 +48,14 @@ DryFrictionStep::DryFrictionStep(StepConfiguration& configuration)
 
 void DryFrictionStep::find_carriers() {
   const Scheme& scheme = configuration_.scheme();
-  std::vector<int> carrier_at(model_.coordinates.size(), -1);  // per coordinate that follows none
+  std::vector<int> carrier_at(model_.coordinates.size(), -1);  // per coordinate: index of its carrier
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
     if (!coordinate.sticks || (coordinate.friction <= 0 && coordinate.friction_coefficient <= 0)) continue;
     if (scheme.is_composition)
       throw ModelError("<integrator>: scheme '" + std::string(scheme.name) +
-                       "' steps backwards, in which friction of the law 'coulomb' (coordinate '" + coordinate.name +
-                       "') would drive; take another scheme or the law 'smooth'");
+                       "' also steps backwards in time, where friction of the law 'coulomb' (coordinate '" +
+                       coordinate.name + "') would add energy; take another scheme or the law 'smooth'");
     int base = static_cast<int>(index);
     while (model_.coordinates[base].mimicked >= 0) base = model_.coordinates[base].mimicked;
     int& c = carrier_at[base];
@@ -90,7 +93,7 @@ void DryFrictionStep::begin() {
   }
 }
 
-/// 0 where it rests.
+/// Rate of a carrier at the beginning of the step; exactly 0 if it rests.
 double DryFrictionStep::rate_at_begin(const FrictionCarrier& carrier) const {
   const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
   if (configuration_.state().rests[carrier.coordinate] > 0) return 0;
@@ -126,7 +129,7 @@ void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left
   const int index = model_.first_coordinate[j];
   const Coordinate& coordinate = model_.coordinates[index];
   const NormalForce normal = normal_force(contact_of(model_.joints[j]), left, g.head<3>());
-  const double capacity = coordinate.friction_coefficient * normal.magnitude;  // of the row
+  const double capacity = coordinate.friction_coefficient * normal.magnitude;  // in units of the row
   capacities_[index] = capacity / configuration_.effort_weight();
   const CoordinateStep change = configuration_.coordinate_step(index, configuration_.increment_of(coordinate));
   const SmoothDirection direction_now =
@@ -193,7 +196,7 @@ void DryFrictionStep::hold(Balance& balance) {
 void DryFrictionStep::hold_tangent_row(const Coordinate& coordinate, TangentBackend& tangent) const {
   ReleasedVector coefficients = ReleasedVector::Ones(1);
   int component = 0;
-  if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
+  if (coordinate.is_angle) {  // the increment's variation is S^{-1} spin
     component = coordinate.component % 3;
     const Vector3 rotation = configuration_.increment_of(coordinate.joint).tail<3>();
     coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
@@ -232,7 +235,7 @@ void DryFrictionStep::place_held() {
            std::abs(configuration_.increment_of(coordinate) - carrier.law.held_increment()) <=
                kAtRest * scale_of(model_, coordinate);
   };
-  int resting_angles = 0;  // of the free rotation at hand; its components follow each other
+  int resting_angles = 0;  // of the present spherical joint, whose three components follow each other in the list
   for (const FrictionCarrier& carrier : carriers_) {
     const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
     const int component = coordinate.component % 3;
@@ -248,8 +251,9 @@ void DryFrictionStep::place_held() {
   }
 }
 
-/// `rate`: at the beginning. In a step in which friction stops a coordinate, or turns it round, its rate at the end is
-/// not that of sliding: when it stops follows from the mean rate over the last step, which lies half of it back.
+/// Predicts after which fraction of the step friction stops a coordinate. `rate`: at the beginning of the step. The
+/// rate at the end does not help: it is not that of sliding, since the coordinate stops or turns in the step. So the
+/// deceleration is computed from the mean rate of the last step, which belongs to the middle of that step.
 double DryFrictionStep::fraction_of_stop(const FrictionCarrier& carrier, double rate) const {
   const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
   const Coordinate& coordinate = model_.coordinates[carrier.coordinate];

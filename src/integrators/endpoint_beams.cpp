@@ -109,7 +109,7 @@ void EndpointBeams::accept(State& state) {
   }
   if (interpolation_) std::copy(end_momentum_rates_.begin(), end_momentum_rates_.end(), state.momentum_rates.begin());
   points_.accept(state);
-  if (interpolates_kinematics()) points_.invalidate();  // those at hand belong to t_{n+1+alpha}
+  if (interpolates_kinematics()) points_.invalidate();  // the present points belong to t_{n+1+alpha}
 }
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// All beams of a model at the end of a step (Newmark's family), or in equilibrium (Muñoz 2004, ch. 4).
+/// All beams of a model whose forces act at the end of a step (Newmark family), or in equilibrium (Muñoz 2004, ch. 4).
 
 #include "elements/additive_beam.h"
 #include "elements/endpoint_beam.h"
@@ -30,7 +30,7 @@ class EndpointBeams : public BeamFamily {
   void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
                   ElementSystem<Nodes>& system);
   bool is_additive() const { return configuration_.scheme().weak_form == WeakForm::Additive; }
-  /// Strains of another instant, or a form with other unknowns, are not carried.
+  /// Strains are not carried if they belong to another instant, or if the form has other unknowns.
   bool may_carry() const { return !is_additive() && !interpolates_kinematics(); }
   bool interpolates_kinematics() const { return interpolation_ && configuration_.scheme().hht == HhtForm::Kinematics; }
 

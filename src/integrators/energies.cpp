@@ -14,7 +14,7 @@ Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
 }
 
-/// Energy that the dampers' memory stores at a stiffness point [J/m].
+/// Energy that is stored in the memory of numerical dissipation and dampers at a stiffness point [J/m].
 template <int Nodes>
 double stored(const TimeRule& rule, const StrainMemory& memory, const BeamElement<Nodes>& element, int point) {
   const Matrix6& stiffness = element.stiffness_points[point].stiffness;

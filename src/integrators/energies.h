@@ -1,5 +1,5 @@
 #pragma once
-/// Energies and momenta of a state.
+/// Computes energies and momenta of a state.
 
 #include "flexarm/model/results.h"
 #include "model/model.h"
@@ -13,9 +13,9 @@ struct Momenta {
   Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
 };
 
-/// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain`
-/// contains the elastic energy of joint stops, of springs, force elements and gears, and what numerical dissipation has
-/// stored (second order in the step); `potential` is that of gravity.
+/// Energies by the scheme's own quadrature (lumped or integrated rotary inertia), so that the energy balance is exact.
+/// `strain` contains the elastic energy of beams, joint stops, springs, force elements and gears, and the energy stored
+/// by numerical dissipation (of second order in the step). `potential` is that of gravity.
 Energies energies(const Model& model, const Scheme& scheme, const State& state);
 Momenta momenta(const Model& model, const Scheme& scheme, const State& state);
 

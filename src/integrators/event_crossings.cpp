@@ -1,4 +1,4 @@
-// Crossings of EventMarch: what is next, and how rates jump there.
+// EventMarch: how it passes an event. It chooses the next stage, and finds the jump of the rates.
 #include <array>
 #include <cmath>
 #include <utility>
@@ -11,10 +11,10 @@
 namespace flexarm {
 namespace {
 
-/// Part of a piece over which rates on both sides of an event are compared: their error is of its third order, their
-/// round-off over its square.
+/// Rates on the two sides of an event are compared over this fraction of a piece. Their discretisation error is of
+/// third order in this length, their round-off error is proportional to its inverse square.
 constexpr double kGlance = 0.25;
-/// Events that are closer than this part of a sub-step may come in the other order.
+/// Two events that are closer than this fraction of a sub-step may occur in the other order in a neighbour.
 constexpr double kSameInstant = 1e-2;
 
 }  // namespace
@@ -27,7 +27,7 @@ int EventMarch::next_stage(std::size_t index, State& state, double step) {
     state.rests[corner.coordinate] = 0;
     return slip();
   }
-  // It sticks if it can, from rest.
+  // It sticks if friction can hold it at rest.
   set_stage(index, 0);
   state.rests[corner.coordinate] = 1;
   other_ = state;
@@ -63,7 +63,7 @@ bool EventMarch::find_jump(const State& state, const EventModes& before, double 
   };
   jump_.resize(first_.size());
   for (std::size_t i = 0; i < jump_.size(); ++i) {
-    // What is not integrated over time, as forces, jumps itself; neighbours find it anew.
+    // Numbers that are not integrals over time, such as forces, jump themselves. Neighbours compute them anew.
     const bool is_rate = std::abs(first_[i] - second_[i]) <= 0.5 * std::abs(first_[i]);
     jump_[i] = is_rate && std::isfinite(first_[i]) ? limit(first_[i], second_[i], third_[i]) : 0.0;
   }
@@ -73,8 +73,8 @@ bool EventMarch::find_jump(const State& state, const EventModes& before, double 
   return true;
 }
 
-/// Velocities of conserving schemes have a remainder that changes its sign in each step: steps of one parity have the
-/// same.
+/// Velocities of conserving schemes have an error that alternates from step to step. Its sign is the same in steps of
+/// equal parity, so the slope is computed from such steps.
 bool EventMarch::find_rate_slope(const State& state, const EventModes& before, double step, Crossing& crossing) {
   const EventModes after = modes_;
   std::array<double, 2> slope{};
@@ -105,19 +105,19 @@ bool EventMarch::cross(State& state, std::size_t index, double step, double piec
   set_stage(index, crossing.to);
   if (crossing.jumps) {
     if (!find_jump(state, before_, kGlance * piece, crossing)) return false;
-    // What a step that comes does to the rate must not undo it.
+    // The derivative is reliable only if the guard's rate in the next step has the same sign and a similar size.
     trial_ = state;
     std::swap(modes_, before_);
     const bool is_done = advance(trial_, step);
     std::swap(modes_, before_);
     const double mean = is_done ? (guard(index, crossing.from, model_, trial_) - crossing.guard) / step : 0;
     if (crossing.slope >= 0 || std::abs(mean - crossing.slope) > std::abs(crossing.slope))
-      crossing.doubt = "it is grazed: it comes slower than what a step changes of its rate";
+      crossing.doubt = "the event is grazing: its rate is smaller than the change of that rate in a step";
     else if (last_jump_ != kNone && last_jump_ != index && state.time - last_jump_time_ <= kSameInstant * step)
-      crossing.doubt = fmt::format("it comes at the same instant as that of '{}', perhaps before it",
+      crossing.doubt = fmt::format("it happens at the same time as the event of '{}', possibly before it",
                                    model_.coordinates[corners_[last_jump_].coordinate].name);
     if (crossing.doubt.empty() && at_end_)
-      crossing.doubt = "schemes of the Newmark family remember accelerations of before";
+      crossing.doubt = "schemes of the Newmark family keep accelerations from before the event";
     last_jump_ = index;
     last_jump_time_ = state.time;
   }

@@ -9,13 +9,14 @@
 namespace flexarm {
 namespace {
 
-/// Parts of a sub-step that are not gone any more: they change a state by less than round-off of its velocities.
+/// If the remaining part of a sub-step is shorter than this fraction of it, it is left out: it changes a state by less
+/// than the round-off of the velocities.
 constexpr double kNothing = 1e-9;
-/// Events within one sub-step, after which they have no order that could be followed.
+/// With more events than this in one sub-step, their order cannot be determined.
 constexpr int kMostEvents = 12;
-/// Evaluations for the place of an event.
+/// Limit for the evaluations that locate an event.
 constexpr int kMostTries = 60;
-/// Share of the push of a stop that its damper has in what rests on it.
+/// A coordinate rests on its stop if the damper contributes less than this share to the stop's push.
 constexpr double kQuiet = 1e-3;
 
 StepSettings settings_of_march() {
@@ -116,7 +117,7 @@ double EventMarch::guard_now(std::size_t index, const State& state) {
   const Corner& corner = corners_[index];
   if (!corner.is_friction || stages_[index] != 0) return guard(index, stages_[index], model_, state);
   const Hold& hold = holds_[corner.place];
-  // What a conserving scheme has is the mean of a piece, half of it before its end.
+  // In a conserving scheme the reaction is the mean over a piece, so it is extrapolated by half a piece to the end.
   const double end = at_end_ || hold.pieces < 2 ? hold.reaction : 1.5 * hold.reaction - 0.5 * hold.before;
   return hold.capacity - std::abs(end);
 }
@@ -215,7 +216,7 @@ bool EventMarch::guard_after(const State& start, double length, int pieces, std:
   return true;
 }
 
-/// By the secant method that keeps a bracket (Illinois).
+/// Locates the event by the Illinois variant of the secant method, which keeps a bracket.
 bool EventMarch::locate(const State& start, double begin, double end, int pieces, std::size_t corner, double& length) {
   double at_begin, at_end;
   const bool is_stuck = corners_[corner].is_friction && stages_[corner] == 0;
@@ -230,7 +231,7 @@ bool EventMarch::locate(const State& start, double begin, double end, int pieces
   length = end;
   if (at_end >= 0) return true;
   const double whole = end;
-  int kept = 0;  // which end of the bracket stayed last
+  int kept = 0;  // the end of the bracket that the last try kept: > 0 the end, < 0 the beginning
   for (int tries = 0; tries < kMostTries; ++tries) {
     const double last = length;
     length = end - at_end * (end - begin) / (at_end - at_begin);
@@ -251,7 +252,8 @@ bool EventMarch::locate(const State& start, double begin, double end, int pieces
   return true;
 }
 
-/// The first event within `left` [s] of `start`: its corner, or kNone, and after how long it comes.
+/// Finds the first event within `left` [s] after `start`. Sets `corner` to its corner, or kNone, and `length` to the
+/// time from `start` to the event.
 bool EventMarch::find_next(const State& start, double left, int pieces, std::size_t& corner, double& length) {
   trial_ = start;
   int piece = 0;
@@ -262,7 +264,7 @@ bool EventMarch::find_next(const State& start, double left, int pieces, std::siz
   for (std::size_t tries = 0; tries <= corners_.size(); ++tries) {
     if (!locate(start, begin, end, pieces, corner, length)) return false;
     if (length <= kNothing * left) return true;
-    // Another one may come before.
+    // Check whether another event comes before this one.
     double now;
     if (!guard_after(start, length, pieces, corner, now)) return false;
     std::size_t other = kNone;
@@ -293,17 +295,17 @@ std::string EventMarch::go(State& state, double length, int pieces, MarchFollowe
   double left = length;
   last_jump_ = kNone;
   for (int events = 0; left > kNothing * length; ++events) {
-    if (events > kMostEvents) return "stops are touched or friction sticks more often in a step than can be followed";
+    if (events > kMostEvents) return "a step has more events of stops and friction than can be followed";
     std::size_t corner;
     double way;
-    if (!find_next(state, left, pieces, corner, way)) return "its events are not found: a piece of the step fails";
+    if (!find_next(state, left, pieces, corner, way)) return "events cannot be found: a part of the step fails";
     if (way > kNothing * length) {
-      if (!march(state, way, pieces, follower)) return "its events are not found: a piece of the step fails";
+      if (!march(state, way, pieces, follower)) return "events cannot be found: a part of the step fails";
       left -= way;
     }
     if (corner == kNone) break;
     if (!cross(state, corner, length, length / pieces, follower))
-      return "rates on both sides of an event are not found";
+      return "velocities before and after an event cannot be found";
   }
   state.time = begin + length;
   return "";

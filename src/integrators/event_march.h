@@ -1,5 +1,6 @@
 #pragma once
-/// A sub-step of a run once more, in pieces that end where its equations change. (docs/notes/sensitivities.md 3)
+/// Repeats a sub-step of a run in pieces that end at its events, where the equations change. This yields derivatives
+/// over events. (docs/notes/sensitivities.md 3)
 
 #include <string>
 #include <vector>
@@ -10,35 +11,37 @@
 
 namespace flexarm {
 
-/// A law with a corner: one side of a stop, or dry friction. What it does has stages, in each of which it is smooth.
+/// A law with corners: one side of a stop, or dry friction of a carrier. It has several stages, and is smooth in each.
 struct Corner {
   bool is_friction = false;
-  int coordinate = -1;  ///< of the stop, or that carries the friction
-  int place = 0;        ///< of a stop 0 below, 1 above; of friction its carrier
-  double damping = 0;   ///< of a stop's damper
+  int coordinate = -1;  ///< of the stop, or the carrier's coordinate
+  int place = 0;        ///< stop: 0 for the lower, 1 for the upper; friction: index of the carrier
+  double damping = 0;   ///< of the stop's damper
 };
 
-/// Where equations change: s+ = s- + jump dt, with dt = -(guard - guard of the run) / slope of a neighbour.
+/// An event, at which a law changes its stage. There a neighbour's state changes by s+ = s- + jump dt, with dt =
+/// -(guard of the neighbour - guard of the run) / slope.
 struct Crossing {
   double time = 0;  ///< [s]
   std::size_t corner = 0;
   int from = 0, to = 0;                       ///< stages
-  bool jumps = false;                         ///< else derivatives are continuous
-  double guard = 0, slope = 0;                ///< of the run: it vanishes at the event, and its rate
-  const std::vector<double>* jump = nullptr;  ///< of the rates of a state's numbers (model/state_numbers.h)
-  std::string doubt;                          ///< why the derivative of its time is not to be trusted; empty: it is
+  bool jumps = false;                         ///< whether rates jump; otherwise derivatives are continuous
+  double guard = 0, slope = 0;                ///< of the run: its guard, zero at the event, and the guard's rate
+  const std::vector<double>* jump = nullptr;  ///< jump of the rates of all state numbers (model/state_numbers.h)
+  std::string doubt;                          ///< why the derivative of the event's time is unreliable; else empty
 };
 
-/// Sees what the march does.
+/// Interface for an object that is told about each piece and each event of a march.
 class MarchFollower {
  public:
   virtual ~MarchFollower() = default;
-  /// The equations of a piece that begins at `state` are solved, and about to be accepted.
+  /// The equations of a piece that begins at `state` are solved. The solution is accepted afterwards.
   virtual void follow_piece(const State& state, const StepSystem& solved) = 0;
   virtual void cross(const Crossing& crossing) = 0;
 };
 
-/// Locates events of stops and dry friction. Between them branches are held, so that all is smooth in time and start.
+/// Locates events of stops and dry friction. Between events the branches of these laws are fixed, so that the motion is
+/// a smooth function of time and of the initial state.
 class EventMarch {
  public:
   /// The model must outlive this.
@@ -46,29 +49,32 @@ class EventMarch {
 
   bool has_corners() const { return !corners_.empty(); }
   const Corner& corner(std::size_t index) const { return corners_[index]; }
-  /// Those that hold now; neighbours refer to them.
+  /// The branches that hold now; neighbours refer to them.
   const EventModes& modes() const { return modes_; }
   const std::vector<int>& stages() const { return stages_; }
   void set_stages(const std::vector<int>& stages);
-  /// Stages as a state shows them.
+  /// Sets all stages to those that a state has.
   void restart(const State& state);
-  /// True where a step that was solved from `state` is to be gone in pieces: an event is in it, or a hit, in which what
-  /// steps are off by would be divided by how long it lasts.
+  /// Whether a step that was solved from `state` has to be repeated in pieces: it contains an event, or a hit. In a
+  /// hit, errors of the steps would be divided by the short duration of the hit.
   bool is_wanted(const State& state, const StepSystem& solved);
-  /// True where something swings on a stop in that state, at these stages or, null, at those that the state shows.
+  /// Whether a coordinate oscillates on a stop in that state, with the given stages; null: the stages that the state
+  /// has.
   bool is_hit(const State& state, const std::vector<int>* stages);
-  /// Goes from `state` over `length` [s], by `pieces` equal ones between events. Why it does not come there, or
-  /// nothing.
+  /// Advances `state` by `length` [s], with `pieces` equal pieces between events. Returns the reason if that fails,
+  /// otherwise an empty string.
   std::string go(State& state, double length, int pieces, MarchFollower& follower);
-  /// Of a like model's state: > 0 in the stage, 0 where it ends. Of friction that sticks there is none.
+  /// The guard of a stage in a state of a similar model: > 0 within the stage, 0 at its end. Not for friction that
+  /// sticks.
   double guard(std::size_t corner, int stage, const Model& model, const State& state);
 
-  /// Stages of stops; those of friction are the signs of its slip, 0 where it sticks.
+  /// Stages of stops: out of contact, in contact, and inside but without force. Stages of friction are the sign of its
+  /// slip, 0 while it sticks.
   enum Stage { kOut = 0, kIn = 1, kReleased = 2 };
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  /// By which it is held against slipping, at the end of the last piece.
+  /// The reaction that dry friction exerts on a sticking carrier, and its capacity, at the end of the last piece.
   struct Hold {
     double reaction = 0, capacity = 0, before = 0;
     int pieces = 0;
@@ -79,7 +85,8 @@ class EventMarch {
   bool solve(const State& state, double step);
   void note_holds();
   bool advance(State& state, double step);
-  /// The same over so many pieces, and the first corner that leaves its stage in them, with its piece.
+  /// Advances `pieces` times. Stops after the first piece in which a corner leaves its stage, and sets `left` and
+  /// `piece`.
   bool run(State& state, double length, int pieces, std::size_t& left, int& piece);
   std::size_t violated(const State& state);
   double guard_now(std::size_t corner, const State& state);

@@ -1,5 +1,5 @@
 #pragma once
-/// The branches of laws with corners that hold over a step.
+/// The branches of stops and dry friction that hold over a step.
 
 #include <array>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// A run finds them step by step. Derivatives of a run hold those that the run has, so that its neighbours go by
-/// equations that are smooth. (docs/notes/sensitivities.md 3)
+/// A run finds these branches step by step. Derivatives of the run use the same branches, so that the equations of the
+/// neighbouring runs are smooth. (docs/notes/sensitivities.md 3)
 struct EventModes {
   std::vector<std::array<StopContact, 2>> stops;  ///< per coordinate: below, above
   std::vector<StickSlip::Branch> friction;        ///< per carrier: SlipBack, SlipForth, or HeldLow where it sticks

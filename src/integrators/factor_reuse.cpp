@@ -6,20 +6,22 @@
 namespace flexarm {
 namespace {
 
-// Measured over 26 pairs of scenes and schemes (docs/notes/newton.md 5): half or twice of each of these changes the
-// cost by less than 0.5 % in the mean.
+// Measured over 26 pairs of scenes and schemes (docs/notes/newton.md 5): half or twice of each of these constants
+// changes the cost by less than 0.5 % in the mean.
 
-/// Of the last solve in the mean of its plan.
+/// Weight of the last solve in the mean cost of its plan.
 constexpr double kWeight = 0.125;
-/// Trials may cost a 64th more than the cheapest plan, ...
+/// Trials may add 1/64 to the cost of the cheapest plan. So after a trial that cost (1 + x) times as much as this plan,
+/// there is no trial for 64 x solves.
 constexpr double kSolvesPerLoss = 64;
-/// ... and a good one, which shows little that is new, waits as long.
+/// Smallest number of solves between trials. A cheap trial tells little that is new.
 constexpr double kShortestPause = 16;
 
 }  // namespace
 
 FactorReuse::FactorReuse(double cost) : cost_of_factors_(cost) {
-  // What is not known is taken for full Newton of four iterations, and tried where all that is known is dearer.
+  // An unknown plan is assumed to cost as much as full Newton with four iterations. So it is tried only if all known
+  // plans cost more.
   for (Plan& plan : plans_) plan.cost = 4 * cost;
 }
 
@@ -39,19 +41,19 @@ bool FactorReuse::begin(bool hold) {
 bool FactorReuse::renew(int next, const UpdateOutlook& update) const {
   if (next < planned_ || planned_ == kFull) return true;
   const double digits = -std::log10(update.norm);
-  double rate = digits;  // digits that an iteration with kept factors adds: at most those where they were made
+  double rate = digits;  // digits per iteration with kept factors: at most as many as are correct where they were made
   if (!update.is_by_new) {
     if (update.contraction == 0) return false;
     rate = -std::log10(update.contraction);
   }
-  const double right = digits + rate;  // after the update
+  const double right = digits + rate;  // number of correct digits after the update
   const double missing = -std::log10(update.target) - right;
   if (missing <= 0) return false;
-  // Further from the solution nobody can tell that new factors square the error.
+  // Farther from the solution, new factors cannot be expected to converge quadratically.
   constexpr double kFewestDigits = 0.5;
   if (rate <= 0 || right < kFewestDigits) return true;
-  // New factors double the digits, and kept ones then add as many as were right where they were made. An iteration more
-  // shows what the first new update has left.
+  // New factors double the digits. Kept ones then add as many digits per iteration as were correct where they were
+  // made. The estimate includes one more iteration, which shows what the first update with new factors has left.
   const double once = cost_of_factors_ + std::ceil(std::max(missing - right, 0.0) / right);
   const double twice = 2 * cost_of_factors_ + std::ceil(std::max(missing - 3 * right, 0.0) / (2 * right));
   return std::ceil(missing / rate) > 1 + std::min(once, twice);
@@ -73,7 +75,7 @@ void FactorReuse::record(Plan& plan) {
     tried_ = -1;
     pause_ = std::max(kSolvesPerLoss * (cost / plans_[cheapest()].cost - 1), kShortestPause);
   }
-  // A trial shows how things are now.
+  // A trial replaces the old mean, since it shows the present cost.
   plan.cost = plan.is_known && !is_trial ? plan.cost + kWeight * (cost - plan.cost) : cost;
   plan.is_known = true;
   plan.open_cost = 0;

@@ -1,55 +1,55 @@
 #pragma once
-/// Decides when Newton's method factorises its tangent anew, and when it keeps the factors.
+/// Decides in which iterations Newton's method factorises its tangent, and in which it reuses the factors.
 
 #include <array>
 
 namespace flexarm {
 
-/// An update of a solve, and what is expected of the next ones.
+/// The size of an update, and what is expected of the following ones.
 struct UpdateOutlook {
-  double norm = 0;         ///< scaled
-  double contraction = 0;  ///< by which kept factors go on; 0: unknown
-  bool is_by_new = false;  ///< factors
-  double target = 0;       ///< for the norm of what is left
+  double norm = 0;         ///< scaled norm
+  double contraction = 0;  ///< expected ratio of successive updates with kept factors; 0: unknown
+  bool is_by_new = false;  ///< whether the update was made with new factors
+  double target = 0;       ///< required norm of the remaining error
 };
 
-/// A solve makes new factors in its first iterations, or in all: their number is its plan. The plan is learned from the
-/// cost of earlier solves: the cheapest one is used, and now and then its neighbours are tried. After the first
-/// iterations new factors are made if kept ones would take longer for the missing digits.
+/// The number of first iterations with new factors in a solve, or "all", is called its plan. The plan is learned from
+/// the cost of earlier solves: normally the cheapest plan is used, and now and then a neighbouring plan is tried. After
+/// the first iterations, new factors are made if kept factors would take longer to reach the target.
 class FactorReuse {
  public:
-  /// `cost`: of an iteration with new factors over that of one with kept ones, see TangentBackend.
+  /// `cost`: of an iteration with new factors relative to one with kept factors, see TangentBackend::cost_of_factors().
   explicit FactorReuse(double cost);
 
-  /// Forgets all that was learned.
+  /// Forgets everything that was learned.
   void reset() { *this = FactorReuse(cost_of_factors_); }
 
-  /// Starts a solve by a plan. Returns whether its first iteration makes new factors. `hold`: there are factors of such
-  /// a system.
+  /// Starts a solve and chooses its plan. Returns whether its first iteration makes new factors. `hold`: factors of the
+  /// same kind of system are available.
   bool begin(bool hold);
-  /// Whether iteration `next` (the first is 0) makes new factors, after `update`.
+  /// Whether iteration `next` (counted from 0) makes new factors, after `update`.
   bool renew(int next, const UpdateOutlook& update) const;
-  /// Ends a solve. The cost of a failed solve includes those that are made instead of it, with any plan or none.
+  /// Ends a solve. If it failed, the solves that replace it count as part of its cost, whatever plan they have.
   void end(int iterations, int factorisations, bool converged);
 
  private:
   static constexpr int kFull = 3;  // the plan of full Newton: new factors in all iterations
   struct Plan {
-    double cost = 0;  // of its solves, in iterations with kept factors: a mean that forgets
+    double cost = 0;  // mean cost of its solves, in iterations with kept factors; older solves count less
     bool is_known = false;
-    double open_cost = 0;  // of one that is not solved yet
-    bool is_open = false;
+    double open_cost = 0;  // cost so far of a solve that has not succeeded yet
+    bool is_open = false;  // there is such a solve
   };
 
   int cheapest() const;
   void record(Plan& plan);
 
   double cost_of_factors_;
-  std::array<Plan, kFull + 1> plans_;  // by first iterations with new factors
-  int planned_ = 0;                    // of this solve
-  int tried_ = -1;                     // the plan on trial; -1: none
+  std::array<Plan, kFull + 1> plans_;  // index: number of first iterations with new factors
+  int planned_ = 0;                    // plan of the present solve
+  int tried_ = -1;                     // plan on trial; -1: none
   bool tries_more_ = true;
-  double pause_ = 0;  // solves from one trial to the next
+  double pause_ = 0;  // number of solves between two trials
   int since_trial_ = 0;
 };
 

@@ -14,11 +14,11 @@ namespace {
 using Quantity = StepResult::Failure::Quantity;
 using Reason = StepResult::Reason;
 
-/// Local rotations end at a turn from the reference node (LocalRotations). A step that starts so near to that, and
-/// fails, has failed at it [rad].
+/// Local rotation vectors reach their limit at a full turn from the reference node (LocalRotations). If a failed step
+/// starts with an element so close to this limit, the limit is the cause [rad].
 constexpr double kNearlyATurn = 0.95 * 2 * kPi;
 
-/// Of a variable of DegreesOfFreedom.
+/// The place of a variable of DegreesOfFreedom.
 StepResult::Place place_of_variable(const StepSystem& system, int variable) {
   const Model& model = system.configuration().model();
   const State& state = system.configuration().state();
@@ -29,10 +29,10 @@ StepResult::Place place_of_variable(const StepSystem& system, int variable) {
   return place_of_loop(model, state, variable - dof.node_count - dof.joint_count);
 }
 
-// ---------------------------------------------------------------- what stands out
+// ---------------------------------------------------------------- the most conspicuous quantity
 
-/// The largest force or moment that is left; moments count by the mechanism's length. What is not a number is larger
-/// than all else.
+/// Finds the largest unbalanced force or moment. Moments are compared with forces by the mechanism's length scale. NaN
+/// counts as the largest value.
 void find_largest_residual(const StepSystem& system, StepResult::Failure& failure) {
   const Model& model = system.configuration().model();
   const State& state = system.configuration().state();
@@ -78,7 +78,8 @@ void find_largest_rotation(const StepSystem& system, StepResult::Failure& failur
   failure.amount = 2 * std::atan(0.5 * largest.size);
 }
 
-/// Rotation of a node from its element's reference; of the two nodes half-way between which that lies, from each other.
+/// Rotation of a node from its element's reference. If the reference lies half-way between two nodes, and the node is
+/// one of these: the rotation between the two.
 template <int N>
 double bending(const LocalRotations<N>& local, int i) {
   const ReferenceNodes reference = LocalRotations<N>::reference;
@@ -86,7 +87,7 @@ double bending(const LocalRotations<N>& local, int i) {
   return (is_of_pair ? 2 : 1) * local.rotation_vectors()[i].norm();
 }
 
-/// True if an element is bent as far as its interpolation goes.
+/// Whether an element is bent up to the limit of its interpolation; if so, sets the place.
 bool find_bent_element(const StepSystem& system, StepResult::Failure& failure) {
   if (system.configuration().scheme().interpolation != Interpolation::Local) return false;
   const Model& model = system.configuration().model();
@@ -109,7 +110,7 @@ bool find_bent_element(const StepSystem& system, StepResult::Failure& failure) {
   return failure.quantity == Quantity::Bending;
 }
 
-/// True if a loop of the configuration at the beginning is at a dead point.
+/// Whether a loop is at a dead point in the configuration at the beginning of the step; if so, sets the place.
 bool find_dead_point(const StepSystem& system, StepResult::Failure& failure) {
   const StepConfiguration& configuration = system.configuration();
   const int closure = closure_at_dead_point(configuration.model(), system.degrees_of_freedom(), configuration.state());
@@ -117,7 +118,7 @@ bool find_dead_point(const StepSystem& system, StepResult::Failure& failure) {
   return closure >= 0;
 }
 
-/// What `failure.cause` is to be said of.
+/// Sets the place that belongs to `failure.cause`.
 void find_place(const StepSystem& system, StepResult::Failure& failure) {
   const StepConfiguration& configuration = system.configuration();
   switch (failure.cause) {
@@ -153,7 +154,7 @@ void locate_failure(const StepSystem& system, StepResult& result) {
   StepResult::Failure& failure = result.failure;
   failure.time = system.configuration().state().time;
   failure.step = system.configuration().step();
-  // A slow look at the mechanism says more than that the iteration did not converge.
+  // These checks are slow, but give a more specific reason than a failed iteration.
   if (result.reason != Reason::None && find_bent_element(system, failure))
     result.reason = Reason::BentTooFar;
   else if (result.reason == Reason::NoConvergence && find_dead_point(system, failure))

@@ -6,8 +6,8 @@
 
 namespace flexarm {
 
-/// Completes `result.failure` by what the last attempt at the step has left in `system`, and names a cause where the
-/// reason is only that the iteration did not converge. Takes its time, and allocates where there are loops.
+/// Completes `result.failure` with what the last attempt at the step has left in `system`. Replaces a failed iteration
+/// as the reason by a more specific one, if there is one. Slow; allocates memory if there are loops.
 void locate_failure(const StepSystem& system, StepResult& result);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// Force elements that are too far from acting to be evaluated in every step.
+/// Finds force elements, such as contacts, that are too far from acting to be evaluated in the present step.
 
 #include <vector>
 
@@ -7,24 +7,24 @@
 
 namespace flexarm {
 
-/// Elements are far by their distance when they were evaluated last, less how far nodes have moved since then.
+/// An element counts as far if the nodes have moved, since its last evaluation, by less than its distance from acting.
 class FarElements {
  public:
   FarElements(std::size_t elements, std::size_t nodes) : rooms_(elements) { last_.reserve(nodes); }
 
-  /// Of a step that begins so. Poses may have been set since the last one.
+  /// Starts a step. Poses may have been changed by others since the last step.
   void begin(const ForceStart& start);
-  /// What the trial end of the step is from its beginning.
+  /// Sets the motion from the beginning of the step to its trial end.
   void end(const std::vector<NodePose>& begin, const std::vector<NodePose>& end) { in_step_ = travel(begin, end); }
-  /// From the beginning of the step on.
+  /// Sets how far nodes may move, from the beginning of this step, before the element can act.
   void set_room(std::size_t element, const ForceRoom& room) { rooms_[element] = {room, travelled_}; }
-  /// It acts on nothing in the step.
+  /// Whether the element cannot act in this step, unless nodes move at more than twice their initial speeds.
   bool is_far(std::size_t element) const { return has_room(element, ahead_); }
-  /// Nor has it come to touch in it.
+  /// Whether the element has certainly not come into contact at the trial end.
   bool stays_far(std::size_t element) const { return has_room(element, in_step_); }
 
  private:
-  /// Sums of steps' largest ways and turns of all nodes [m, rad].
+  /// Sums, over steps, of the largest displacement and the largest rotation of a node [m, rad].
   struct Travel {
     double way = 0, turn = 0;
   };
@@ -41,7 +41,7 @@ class FarElements {
   }
 
   std::vector<Room> rooms_;
-  std::vector<NodePose> last_;  // at the beginning of the last step
+  std::vector<NodePose> last_;  // poses at the beginning of the last step
   Travel travelled_, ahead_, in_step_;
 };
 

@@ -14,8 +14,9 @@ void couple_force_elements(const Model& model, const State& state, TangentBacken
     tangent.couple(static_cast<int>(k), nodes[k].data(), static_cast<int>(nodes[k].size()));
 }
 
-ForceElements::ForceElements(const StepConfiguration& configuration)
+ForceElements::ForceElements(const StepConfiguration& configuration, const StepHistories& histories)
     : configuration_(configuration),
+      histories_(histories),
       far_(configuration.model().force_elements.size(), configuration.model().nodes.size()) {
   const ForceElementList& elements = configuration.model().force_elements;
   if (elements.empty()) return;
@@ -24,29 +25,46 @@ ForceElements::ForceElements(const StepConfiguration& configuration)
   for (const auto& element : elements)
     if (!is_plain && !element->suits_all_schemes())
       throw ModelError(
-          fmt::format("<integrator>: scheme '{}' has no <{}>; take one of the energy-momentum family, as em",
+          fmt::format("<integrator>: scheme '{}' has no <{}>; take one of the energy-momentum family, such as em",
                       scheme.name, element->kind()));
   if (scheme.hht != HhtForm::None)
     throw ModelError(
         fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
                     elements.front()->kind()));
-  int most = 0, memory = 0;
+  int most = 0, memory = 0, functions = 0;
   for (const auto& element : elements) {
     memory_begins_.push_back(memory);
+    function_begins_.push_back(functions);
     nodes_.emplace_back().reserve(element->most_nodes());
     most = std::max(most, 6 * element->most_nodes());
     memory += element->memory_size();
+    functions += static_cast<int>(element->functions().size());
     may_be_far_ = may_be_far_ || element->hits();
   }
   residual_.resize(most);
   tangent_.resize(static_cast<std::size_t>(most) * most);
   memory_.resize(memory);
+  functions_.resize(functions);
   acts_.resize(elements.size());
   velocities_.resize(configuration.model().nodes.size());
 }
 
+/// Evaluates the elements' functions of time over the step.
+void ForceElements::find_functions() {
+  // As loads, they have their values at time 0 in statics.
+  const double begin = configuration_.scheme().is_static ? 0 : configuration_.state().time;
+  const double end = begin + configuration_.step();
+  FunctionStep* out = functions_.data();
+  for (const auto& element : configuration_.model().force_elements)
+    for (const int history : element->functions()) {
+      const TimeFunction& function = configuration_.model().histories[history];
+      *out++ = {function(begin), function(end), element->uses_means() ? function.mean(begin, end) : 0};
+    }
+}
+
 void ForceElements::begin(TangentBackend& tangent) {
   if (nodes_.empty()) return;
+  find_functions();
   const std::vector<NodeState>& states = configuration_.state().nodes;
   std::transform(states.begin(), states.end(), velocities_.begin(), spatial_velocity);
   const ForceElementList& elements = configuration_.model().force_elements;
@@ -56,7 +74,7 @@ void ForceElements::begin(TangentBackend& tangent) {
   for (std::size_t k = 0; k < elements.size(); ++k) {
     nodes_[k].clear();
     acts_[k] = false;
-    if (!far_.is_far(k)) {  // what is far remembers nothing
+    if (!far_.is_far(k)) {  // far elements have no memory
       std::fill_n(memory_.begin() + memory_begins_[k], elements[k]->memory_size(), 0.0);
       find_nodes(*elements[k], start, nodes_[k]);
       const double* memory = configuration_.state().force_memory.data() + memory_begins_[k];
@@ -68,13 +86,14 @@ void ForceElements::begin(TangentBackend& tangent) {
   }
 }
 
-/// Without memory.
+/// The data of the step, without the elements' memory.
 ForceStep ForceElements::step() {
   const Scheme& scheme = configuration_.scheme();
   ForceStep step{configuration_.begin(), configuration_.end(), velocities_};
   step.duration = configuration_.step();
   step.at_end = !scheme.is_incremental();
   if (step.at_end) step.gamma = scheme.gamma;
+  step.load_factor = histories_.factor;
   return step;
 }
 
@@ -86,6 +105,7 @@ void ForceElements::evaluate(Balance& balance) {
     if (!acts_[k]) continue;
     step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
     step.new_memory = memory_.data() + memory_begins_[k];
+    step.functions = functions_.data() + function_begins_[k];
     evaluate(k, step, balance);
   }
 }
@@ -111,6 +131,7 @@ bool ForceElements::need_halves(double refinement) {
   for (std::size_t k = 0; k < elements.size(); ++k) {
     if (far_.stays_far(k)) continue;
     step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
+    step.functions = functions_.data() + function_begins_[k];
     if (elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
   }
   return false;

@@ -1,48 +1,54 @@
 #pragma once
-/// Elements that act between points, over a step or in an equilibrium.
+/// Force elements between points of links (springs, contacts), over a step or in an equilibrium.
 
 #include <vector>
 
 #include "integrators/balance.h"
 #include "integrators/far_elements.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_histories.h"
 
 namespace flexarm {
 
-/// Tells a tangent of a model which nodes its force elements couple in small motions about a state.
+/// Tells a model's tangent which nodes are coupled by force elements in small motions about a state.
 void couple_force_elements(const Model& model, const State& state, TangentBackend& tangent);
 
 /// The model's force elements as a part of the step.
 class ForceElements {
  public:
-  /// @throws ModelError where there are some and the scheme interpolates forces in time.
-  explicit ForceElements(const StepConfiguration& configuration);
+  /// @throws ModelError if there are force elements and the scheme interpolates forces in time, or if the scheme does
+  /// not suit one of them.
+  ForceElements(const StepConfiguration& configuration, const StepHistories& histories);
 
-  /// `tangent`: of the step's space.
+  /// `tangent`: the backend that is used in this step.
   void begin(TangentBackend& tangent);
   void evaluate(Balance& balance);
-  /// See ForceElement::needs_halves(), of the step as it is solved.
+  /// Whether a force element requires a shorter step, see ForceElement::needs_halves(). For a solved step.
   bool need_halves(double refinement);
-  /// Something may be hit in the step begun last, see ForceElement::hits().
+  /// Whether there may be a hit in the step begun last, see ForceElement::hits().
   bool may_hit() const { return may_hit_; }
-  /// Of the last evaluation.
+  /// Adds the work of the elements at the last evaluation [J].
   void add_work(double& work) const { work += work_; }
   void accept(State& state) const;
 
  private:
   ForceStep step();
+  void find_functions();
   void evaluate(std::size_t k, const ForceStep& step, Balance& balance);
 
   const StepConfiguration& configuration_;
+  const StepHistories& histories_;
+  std::vector<FunctionStep> functions_;  // of all elements, one after the other
   FarElements far_;
   std::vector<std::vector<int>> nodes_;  // per element
-  std::vector<char> acts_;               // per element: on nodes, or it remembers something
-  std::vector<int> memory_begins_;       // per element, in memory_ and State::force_memory
-  std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
+  std::vector<char> acts_;               // per element: it acts on nodes, or has memory
+  std::vector<int> memory_begins_;       // per element: index into memory_ and State::force_memory
+  std::vector<int> function_begins_;     // per element: index into functions_
+  std::vector<Vector6> velocities_;      // per node: {v, w} at the beginning of the step
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
   bool may_hit_ = false;
-  bool may_be_far_ = false;  // some element is one that touches
+  bool may_be_far_ = false;  // whether there is an element that can hit
 };
 
 }  // namespace flexarm

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLanes = Pack::kLanes;
 
-/// Products of unit quaternions do not stay of length one by themselves.
+/// Normalises a quaternion, since round-off changes the length of products of unit quaternions.
 [[gnu::always_inline]] inline QuaternionT<Pack> normalised(const QuaternionT<Pack>& q) {
   const Pack norm = sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   return {q.w() / norm, q.x() / norm, q.y() / norm, q.z() / norm};

@@ -1,5 +1,5 @@
 #pragma once
-/// Motion of many nodes at once, four side by side.
+/// Moves many nodes at once, four side by side in the lanes of a pack.
 
 #include <array>
 #include <vector>
@@ -9,19 +9,19 @@
 
 namespace flexarm {
 
-/// The nodes that are no joint's slave: their poses follow from the unknowns alone, {displacement, rotation} of each.
+/// The nodes that are not slaves of joints. Their poses follow directly from their unknowns {displacement, rotation}.
 class FreeNodes {
  public:
   explicit FreeNodes(const DegreesOfFreedom& dof);
 
-  /// Moves poses by a Newton update, one entry per unknown: displacements [m] and spins [rad].
+  /// Moves `poses` by a Newton update with one entry per unknown: displacements [m] and spins [rad].
   void update(const Eigen::VectorXd& increment, std::vector<NodePose>& poses) const;
-  /// `end`: poses at the beginning, moved by increments of a step: displacements and tangent-scaled rotations.
+  /// Sets `end` to the poses `begin` moved by increments of a step: displacements and tangent-scaled rotations.
   void advance(const std::vector<NodePose>& begin, const Eigen::VectorXd& increment, std::vector<NodePose>& end) const;
 
  private:
   struct Four {
-    int lanes = 0;  // in use; what fills the others is the last node in use
+    int lanes = 0;  // number of lanes in use; unused lanes repeat the last node
     std::array<int, 4> nodes, equations;
   };
   template <class Turn>
@@ -31,7 +31,7 @@ class FreeNodes {
   std::vector<Four> packs_;
 };
 
-/// Tangent-scaled rotations of all nodes over a step, cay(w) = end begin^-1.
+/// Sets the tangent-scaled rotations w of all nodes over a step: cay(w) = end begin^-1.
 void set_increments(const std::vector<NodePose>& begin, const std::vector<NodePose>& end,
                     std::vector<Vector3>& increments);
 

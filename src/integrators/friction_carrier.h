@@ -1,5 +1,5 @@
 #pragma once
-/// Set-valued friction of the coordinates that share one unknown.
+/// Set-valued dry friction of coordinates that share one unknown.
 
 #include <vector>
 
@@ -7,13 +7,13 @@
 
 namespace flexarm {
 
-/// A coordinate that follows no other one, with those that follow it and have set-valued friction: all move or stick
-/// together, and its row carries what all of them dissipate.
+/// A coordinate that does not follow another one, together with its followers that have set-valued friction. They stick
+/// or move together, and the row of the first coordinate contains the friction of all.
 struct FrictionCarrier {
   int coordinate = -1;
   StickSlip law;
-  std::vector<int> members;                          ///< coordinates with friction, itself perhaps among them
-  double increment = 0, reaction = 0, capacity = 0;  ///< at the last evaluation; the latter two against the increment
+  std::vector<int> members;                          ///< coordinates with friction; may include `coordinate`
+  double increment = 0, reaction = 0, capacity = 0;  ///< at the last evaluation; efforts act against the increment
 };
 
 }  // namespace flexarm

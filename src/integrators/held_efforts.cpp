@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// Of the links at one end of the step; world axes, moments about their centre of mass.
+/// Momentum of the held links at one end of the step; world axes, angular momentum about their centre of mass.
 Vector6 body_momentum(const HeldJoint& held, const NodeState& node) {
   const Vector3& W = node.angular_velocity;
   Vector6 out;
@@ -35,7 +35,7 @@ void HeldEfforts::add_inertia(const HeldJoint& held, int node, Vector6& wrench) 
     wrench += (body_momentum(held, end) - body_momentum(held, begin)) / step.step();
     return;
   }
-  // Hilber, Hughes and Taylor's accelerations belong to instants before the ends: from there to the end.
+  // Accelerations of the Hilber-Hughes-Taylor family belong to instants before the ends; extrapolate them to the end.
   const double later = 1 / step.effort_weight() - 1;
   end.acceleration += later * (end.acceleration - begin.acceleration);
   end.angular_acceleration += later * (end.angular_acceleration - begin.angular_acceleration);
@@ -50,7 +50,7 @@ double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residua
   Vector6 wrench = Vector6::Zero();  // about the centre of mass
   wrench.head<3>() = -histories_.factor * held.mass * model.gravity;
   if (node >= 0) add_inertia(held, node, wrench);
-  // Arms from the node, as joints fold: their mean over the step, or those at its end.
+  // Arm from the node, weighted as in the joints' maps: the mean over the step, or the arm at its end.
   const double end = step.scheme().arm_weight();
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {
     return Vector3(master_pose(model.joints[j], nodes).rotation * held.centre);

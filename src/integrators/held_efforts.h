@@ -1,5 +1,5 @@
 #pragma once
-/// The efforts that hold held joints.
+/// Computes the efforts that hold held joints, which have no unknown.
 
 #include "integrators/joint_reactions.h"
 #include "integrators/nodal_forces.h"
@@ -9,21 +9,22 @@
 
 namespace flexarm {
 
-/// A held joint is no part of the balance. Its effort is what it transmits, seen along its axis: that by which the
-/// momenta of the rigid links change which it carries, less their loads, plus what the joints outboard transmit. These
-/// are known when the step is; nothing is evaluated before. (docs/notes/joints.md 2.1)
+/// A held joint does not appear in the balance of a step. Its effort is the component along its axis of the wrench that
+/// it transmits: the rate of momentum of the rigid links that it carries, minus their loads, plus what the joints
+/// outboard transmit. All of these are known after the step, so that the step itself costs nothing more.
+/// (docs/notes/joints.md 2.1)
 class HeldEfforts {
  public:
   HeldEfforts(const StepConfiguration& configuration, const StepHistories& histories, const NodalForces& forces,
               const JointReactions& reactions)
       : configuration_(configuration), histories_(histories), forces_(forces), reactions_(reactions) {}
 
-  /// Over the step, or at its end in the Newmark family [N or N m].
-  /// @param residual  as the step left it
+  /// The effort over the step, or at its end in the Newmark family [N or N m].
+  /// @param residual  as it is after the step
   double effort(const HeldJoint& held, const ReducedResidual& residual);
 
  private:
-  /// Adds {force, moment about the master} of what changes the momenta of the links.
+  /// Adds the rate of momentum of the links as {force, moment about the centre of mass} to `wrench`.
   void add_inertia(const HeldJoint& held, int node, Vector6& wrench) const;
 
   const StepConfiguration& configuration_;

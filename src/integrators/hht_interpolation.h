@@ -1,13 +1,13 @@
 #pragma once
 /// The Hilber-Hughes-Taylor family: forces at t_{n+1+alpha}, in addition to Newmark's rule (Muñoz 2004, sec. 4.2).
 ///
-/// Everything else in the balance must belong to that instant, too, or the family is first order: - Momentum rates in
-/// all three forms as the thesis has them for HHT3 only (4.13). With (4.14) the gyroscopic terms
-///   would be those of t_{n+1}. - HHT1 interpolates moments conjugate to rotation vectors and turns them back at the
-/// rotation of t_{n+1+alpha}. - Forces that joints transmit are those of t_{n+1+alpha}, but slaves are folded by the
-/// maps of t_{n+1}. To fold what
-///   belongs there, reactions are extrapolated from two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints they
-///   vanish.
+/// Everything else in the balance must belong to the same instant; otherwise the family has only first order:
+/// - Momentum rates are computed in all three forms as in the thesis for HHT3 only (4.13). With (4.14) the gyroscopic
+///   terms would belong to t_{n+1}.
+/// - HHT1 interpolates the moments that are conjugate to rotation vectors, and transforms them back at the rotation of
+///   t_{n+1+alpha}.
+/// - Joints transmit the forces of t_{n+1+alpha}, but slaves are folded by the maps of t_{n+1}. So the reactions are
+///   extrapolated to t_{n+1} from two steps, (1 - alpha) R_{n+1} + alpha R_n. Without joints the reactions vanish.
 
 #include <vector>
 
@@ -17,22 +17,22 @@
 
 namespace flexarm {
 
-/// Collects internal less external forces at the end of the step, and puts those of t_{n+1+alpha} into the balance.
+/// Collects internal minus external forces at the end of the step, and adds the interpolated forces to the balance.
 class HhtInterpolation {
  public:
-  /// `total_rotations`: per node, of the trial configuration; HHT1 only.
+  /// `total_rotations`: per node, of the trial configuration; used by HHT1 only.
   HhtInterpolation(const StepConfiguration& configuration, const std::vector<Vector3>& total_rotations);
 
-  /// The trial configuration has changed.
+  /// To be called when the trial configuration has changed.
   void begin_evaluation();
-  /// The configuration in which forces are evaluated: that at t_{n+1+alpha} in HHT3, otherwise the end of the step.
+  /// The configuration in which forces are evaluated: at t_{n+1+alpha} in HHT3, otherwise at the end of the step.
   const std::vector<NodePose>& configuration() const { return interpolated_; }
 
-  /// Takes an element's forces over, and turns its tangent into that of the interpolated ones.
+  /// Takes over an element's forces, and changes its tangent into that of the interpolated forces.
   template <int Nodes>
   void take(const BeamElement<Nodes>& element, bool with_tangent, ElementSystem<Nodes>& system) {
     for (int i = 0; i < Nodes; ++i) end_forces_[element.nodes[i]] += system.residual.template segment<6>(6 * i);
-    system.residual.setZero();  // interpolated for whole nodes
+    system.residual.setZero();  // add_forces() interpolates the sum over each node
     const double factor = 1 + configuration_.scheme().alpha;
     for (int i = 0; i < Nodes && with_tangent; ++i) {
       const int node = element.nodes[i];
@@ -50,22 +50,22 @@ class HhtInterpolation {
       }
     }
   }
-  /// The same for a force on a node and its derivative with respect to the node's spin. `of_configuration`: it depends
-  /// on configuration(), not on the end.
+  /// The same for a force on a node, with its derivative with respect to the node's spin. `of_configuration`: whether
+  /// the force depends on configuration(); otherwise it depends on the end of the step.
   void take(int node, const Vector6& force, Eigen::Matrix<double, 6, 3>& rotational, bool of_configuration,
             bool with_tangent);
-  /// A force that does not change.
+  /// The same for a constant force.
   void take(int node, const Vector3& force) { end_forces_[node].head<3>() += force; }
 
-  /// Adds the forces of t_{n+1+alpha}; all have been taken.
+  /// Adds the forces at t_{n+1+alpha} to the balance. To be called when all forces were taken.
   void add_forces(Balance& balance) const;
-  /// Extrapolates what joints transmit; the balance of nodes is complete, and nothing is folded yet.
+  /// Extrapolates the reactions of joints. To be called when the balance of nodes is complete and before any fold.
   void shift_reactions(Balance& balance);
   void accept(State& state) const;
 
  private:
-  /// A moment on a node at t_{n+1+alpha} from those at both ends, its derivative with respect to the one at the end,
-  /// and at constant moments with respect to the node's spin.
+  /// A moment on a node at t_{n+1+alpha}; its derivative with respect to the moment at the end (slope); and its
+  /// derivative with respect to the node's spin at constant moments.
   struct Moment {
     Vector3 value;
     Matrix3 slope, derivative;
@@ -79,7 +79,7 @@ class HhtInterpolation {
   const StepConfiguration& configuration_;
   const std::vector<Vector3>& total_rotations_;
   std::vector<NodePose> interpolated_;
-  std::vector<Matrix3> interpolated_spins_;  // spin there per spin at the end
+  std::vector<Matrix3> interpolated_spins_;  // derivative of the spin at t_{n+1+alpha} by the spin at the end
   std::vector<Vector6> end_forces_, end_reactions_;
 };
 

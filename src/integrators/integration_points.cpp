@@ -103,7 +103,7 @@ void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& syst
   }
 }
 
-// Compiled here once for each order of elements.
+// Instantiated here once for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(scatter<Nodes>) scatter<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

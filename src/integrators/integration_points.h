@@ -1,5 +1,5 @@
 #pragma once
-/// The integration points of all beams at both ends of a step, of the families whose elements go one by one.
+/// The integration points of all beams at both ends of a step, for the families that evaluate elements one by one.
 
 #include <vector>
 
@@ -10,32 +10,33 @@
 
 namespace flexarm {
 
-/// Life of a step: begin(); elements are gathered and write the points of the trial configuration; accept().
+/// Order of calls in a step: begin(); elements gather nodes and write the points of the trial configuration; accept().
 class IntegrationPoints {
  public:
   IntegrationPoints(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
-  /// Points of the configuration at the beginning, unless those of the last step's end still hold. `carries`: strains
-  /// are carried along for the tangents of the step.
+  /// Starts a step. Computes the points at its beginning, unless those at the end of the last step are still valid.
+  /// `carries`: whether strains are carried for the tangents of this step (docs/notes/newton.md).
   void begin(bool carries);
-  /// The state was changed from outside.
+  /// To be called after the state was changed by something other than a step.
   void invalidate() { hold_ = false; }
-  /// The strains that the geometric part of the next tangent sees become those of an update of the nodes from the poses
-  /// `end`, 6 numbers each.
+  /// Updates the carried strains, which the geometric part of the next tangent uses: linearised strains after an update
+  /// of the nodes, 6 numbers each, from the poses `end`.
   void carry_strains(const std::vector<NodePose>& end, const double* update);
-  /// Of the stiffness points from `first` on; null unless the balance's tangent is to see them.
+  /// The carried strains of the stiffness points from `first` on; null unless the balance's tangent uses carried
+  /// strains.
   const Vector6* carried(int first, const Balance& balance) const {
     return balance.carried ? &carried_strains_[first] : nullptr;
   }
   bool carries_strains() const { return carries_ && holds_carried_; }
-  /// A tangent has seen them.
+  /// To be called after a tangent has used the carried strains.
   void drop_carried() { holds_carried_ = false; }
-  /// See BeamFamily.
+  /// See BeamFamily::work_of_prestrains().
   double work_of_prestrains() const;
-  /// The points at hand become those at the beginning of the next step, and the state's.
+  /// Makes the present points those at the beginning of the next step, and writes them into the state.
   void accept(State& state);
 
-  /// An element's nodes, moved to the poses `end`.
+  /// Gathers an element's nodes, with the poses `end` at the end of the step.
   template <int Nodes>
   void gather(const BeamElement<Nodes>& element, const std::vector<NodePose>& end, ElementNodes<Nodes>& nodes) const {
     const StepConfiguration& c = configuration_;
@@ -55,8 +56,8 @@ class IntegrationPoints {
 
   RotationReference reference;
   std::vector<PointKinematics> begin_stiffness, end_stiffness;
-  std::vector<Matrix3> begin_rotations, end_rotations;  ///< of mass points
-  std::vector<MassPointState> end_motion;               ///< of mass points
+  std::vector<Matrix3> begin_rotations, end_rotations;  ///< per mass point
+  std::vector<MassPointState> end_motion;               ///< per mass point
 
  private:
   void set_begin_points();
@@ -65,10 +66,10 @@ class IntegrationPoints {
   const StepPrestrains& prestrains_;
   bool hold_ = false;
   bool carries_ = false, holds_carried_ = false;
-  std::vector<Vector6> carried_strains_;  // of stiffness points
+  std::vector<Vector6> carried_strains_;  // per stiffness point
 };
 
-/// Adds an element's system to the balance. `is_first`: nothing else of this element has been added before.
+/// Adds an element's system to the balance. `is_first`: whether this is the first system of this element that is added.
 template <int Nodes>
 void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, Balance& balance, bool is_first);
 

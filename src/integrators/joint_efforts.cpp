@@ -29,7 +29,7 @@ void JointEfforts::begin() {
 void JointEfforts::set_motor(std::size_t coordinate, double acting, double at_end, double way) {
   assert(has_motor(configuration_.model().coordinates[coordinate]));
   motor_ways_[configuration_.model().coordinates[coordinate].actuator] = way;
-  // That of both ends, and what made it the mean over the step.
+  // The mean of the efforts at both ends, plus the part of `acting` that corrects it to the mean over the step.
   const double mean = configuration_.scheme().is_incremental()
                           ? acting
                           : acting + 0.5 * (configuration_.state().efforts[coordinate] - at_end);
@@ -43,7 +43,8 @@ void JointEfforts::find_drives(const ReducedResidual& residual, HeldEfforts& hel
   for (std::size_t i = 0; i < efforts_.size(); ++i) {
     const Coordinate& coordinate = model.coordinates[i];
     if (coordinate.motion < 0) continue;
-    // A prescribed coordinate's row is the effort that drives it; that of a held one is empty.
+    // The residual in the row of a prescribed coordinate is the effort that drives it. A held coordinate has no such
+    // row.
     const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
     const double effort = efforts_[i].acting + residual.at(variable)[coordinate.component] / weight;
     efforts_[i] = {effort, mean_of_ends(i, effort), effort};

@@ -1,5 +1,5 @@
 #pragma once
-/// All efforts along coordinates over a step except passive ones.
+/// All efforts on joint coordinates over a step, except passive ones such as damping.
 
 #include <vector>
 
@@ -9,30 +9,30 @@
 
 namespace flexarm {
 
-/// Its effort is what a motor makes of that of the scene or of a command.
+/// Whether a motor transforms the effort of the scene or of a command before it acts on the coordinate.
 inline bool has_motor(const Coordinate& coordinate) {
   return coordinate.actuator >= 0 && coordinate.motion < 0;
 }
 
-/// One effort for each coordinate, whoever makes it: the scene or a command, a motor, or what drives a prescribed
-/// coordinate. Their work and what the state keeps of them are made here alone.
+/// One effort per coordinate, from its source: the scene, a command, a motor, or what drives a prescribed coordinate.
+/// This class alone computes the work of efforts and writes them into the state.
 class JointEfforts {
  public:
   JointEfforts(const StepConfiguration& configuration, const StepHistories& histories);
 
-  /// Those of the scene and of commands, in which motors have a part.
+  /// Starts a step: sets the efforts of the scene and of commands. Motors may replace them later.
   void begin();
   const StepForce& of(std::size_t coordinate) const { return efforts_[coordinate]; }
-  /// What the motor of a coordinate does in all over the step, and at its end; it works along `way`, its rotor's.
+  /// Sets the total effort of a coordinate's motor over the step and at its end. `way`: increment of its rotor.
   void set_motor(std::size_t coordinate, double acting, double at_end, double way);
-  /// Finds what drove prescribed coordinates, from the residual as the step left it, and adds to its means over steps.
+  /// Computes the efforts that drove prescribed coordinates, from the residual after the step. Adds them to `drives`.
   void find_drives(const ReducedResidual& residual, HeldEfforts& held, StepMeans& drives);
-  /// Adds the work of all over the step to `work` [J].
+  /// Adds the work of all efforts over the step to `work` [J].
   void add_work(double& work) const;
   void accept(State& state) const;
 
  private:
-  /// Over the step, of an effort that changes evenly to its value at the end, where only ends are known.
+  /// Mean over the step of an effort of which only the values at both ends are known: it is assumed to change linearly.
   double mean_of_ends(std::size_t coordinate, double at_end) const;
 
   const StepConfiguration& configuration_;

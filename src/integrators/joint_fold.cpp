@@ -55,7 +55,7 @@ void JointFold::add_resistance(int j, Balance& balance) {
     const double slope = weight * passive.slope;
     if (!balance.tangent || slope == 0) continue;
     Eigen::Map<ReleasedSquare> tangent(balance.tangent->diagonal_block(variable), count, count);
-    if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
+    if (coordinate.is_angle) {  // the increment's variation is S^{-1} spin
       const Vector3 rotation = change.tail<3>();
       tangent.row(k).tail<3>() -= slope * cayley::inverse_tangent(rotation).row(k - (count - 3));
     } else {
@@ -64,7 +64,7 @@ void JointFold::add_resistance(int j, Balance& balance) {
   }
 }
 
-/// What the geometric parts of a joint's maps see of the residual.
+/// The force on the slave that the geometric parts of a joint's maps use: the residual, with carried stresses if any.
 Vector6 JointFold::force_on_slave(int j, const Balance& balance) const {
   const int slave = configuration_.model().joints[j].slave;
   const ReducedResidual& residual = balance.residual;

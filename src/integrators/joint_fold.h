@@ -1,5 +1,6 @@
 #pragma once
-/// All joints of a model over a step: slaves are folded into their masters, and efforts act on released coordinates.
+/// All joints of a model over a step: folds slaves into their masters (see TangentBackend), and applies efforts to
+/// joint coordinates.
 
 #include <vector>
 
@@ -16,9 +17,10 @@ class JointFold {
   JointFold(const StepConfiguration& configuration, const JointEfforts& efforts, DryFrictionStep& friction,
             const Actuators& actuators);
 
-  /// Folds all joints from leaf to root, then coordinates that follow others; all nodes' forces are in the balance.
+  /// Folds all joints from the leaves to the root, then mimic coordinates. The balance must contain the forces on all
+  /// nodes.
   void evaluate(Balance& balance);
-  /// Writes released coordinates.
+  /// Writes the joint coordinates into the state.
   void accept(State& state) const;
 
  private:
@@ -33,7 +35,7 @@ class JointFold {
   DryFrictionStep& friction_;
   const Actuators& actuators_;
   std::vector<StopPenalty> stops_;  // per coordinate
-  std::vector<bool> is_resisted_;   // per joint: damping, a stop or friction acts on a coordinate of it
+  std::vector<bool> is_resisted_;   // per joint: one of its coordinates has damping, a stop or friction
   FoldMaps fold_maps_;
   SlideMaps slide_maps_;
   std::vector<MimicMap> mimic_maps_;

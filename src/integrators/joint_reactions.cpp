@@ -9,7 +9,7 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
   const Model& model = configuration_.model();
   int node;
   Vector6 wrench;
-  double end, weight;  // of the end of the step in arms, and of the wrench in the balance
+  double end, weight;  // weight of the end of the step in arms; weight of the wrench in the balance
   if (place.closure >= 0) {
     node = model.closures[place.closure].child;
     wrench = -loops_.on_child(place.closure);

@@ -1,5 +1,5 @@
 #pragma once
-/// Forces in joints over a step, for output, of those joints that the model names.
+/// Computes forces and moments in joints over a step, for sensors. Only for the joints that the model lists.
 
 #include "integrators/loop_multipliers.h"
 #include "integrators/step_configuration.h"
@@ -7,21 +7,21 @@
 
 namespace flexarm {
 
-/// The residual of a slave, once all that hangs on it has been folded, is what its joint does to it: exactly that by
-/// which the momenta of what hangs on it change in the step, less its loads. Moments are about the origin of the link
-/// that the slave carries. What multipliers do to a closure's child is known as it is; what a loop joint does to its
-/// other link is the opposite.
+/// When everything outboard of a slave is folded, the residual of the slave is the wrench by its joint. This wrench
+/// equals exactly the rate of momentum of everything outboard in the step, minus its loads. Moments are about the
+/// origin of the link that the slave carries. For a loop joint, multipliers give the wrench on the closure's child
+/// directly; the other link gets the opposite wrench.
 class JointReactions {
  public:
   JointReactions(const StepConfiguration& configuration, const LoopMultipliers& loops)
       : configuration_(configuration), loops_(loops) {}
 
-  /// Adds to State::transmitted, before the rest of the state is written.
+  /// Adds to State::transmitted. To be called before the rest of the state is written.
   void accept(const ReducedResidual& residual, State& state) const;
-  /// The same of an equilibrium.
+  /// The same for an equilibrium.
   void accept_rest(const ReducedResidual& residual, State& state) const;
   /// {force, moment about the link's origin} over the step, or at its end in the Newmark family; world axes [N, N m].
-  /// @param residual  as the step left it
+  /// @param residual  as it is after the step
   Vector6 transmitted(const ReducedResidual& residual, const ReactionPlace& place) const;
 
  private:

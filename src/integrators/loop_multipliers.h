@@ -1,5 +1,5 @@
 #pragma once
-/// Loops that multipliers close: their forces, and the multipliers during a step.
+/// The Lagrange multipliers of loop closures during a step, and their forces.
 
 #include <vector>
 
@@ -12,32 +12,32 @@ class LoopMultipliers {
  public:
   explicit LoopMultipliers(const StepConfiguration& configuration);
 
-  /// No forces.
+  /// Sets all multipliers to zero.
   void begin();
-  /// Those of the newest step of a history.
+  /// Sets the multipliers to those of the newest step of a history.
   void extrapolate(const IncrementHistory& history);
   void evaluate(Balance& balance) const;
-  /// What they add to the residual of a closure's child.
+  /// {force, moment} that the multipliers add to the residual of a closure's child.
   Vector6 on_child(int closure) const;
-  /// A Newton update, one entry per unknown.
+  /// Applies a Newton update with one entry per unknown.
   void update(const Eigen::VectorXd& increment);
-  /// The history keeps the multipliers in the place of increments of their own.
+  /// Writes the multipliers into the newest increments of a history, at their own equations.
   void remember(IncrementHistory& history) const;
 
   struct Opening {
-    double size = 0;   ///< over the model's length scale, or in rad
-    int closure = -1;  ///< where
+    double size = 0;   ///< divided by the model's length scale, or in rad
+    int closure = -1;  ///< the closure with this violation
   };
-  /// Largest violation of what the closures of loops imply: not zero where a loop was singular at the start.
+  /// Largest violation of constraints that the others of a loop imply. Not zero if the loop was singular at the start.
   Opening largest_opening() const;
 
-  /// Share of the end of the step in the vectors along which multipliers act. Multipliers are forces of the whole step:
-  /// no scheme weights them.
+  /// Weight of the end of the step in the directions along which multipliers act. Multipliers are constant over a step,
+  /// and no scheme weights them.
   double end_weight() const;
 
  private:
   ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;
-  /// visit(closure, multiplier of it, its equation)
+  /// Calls visit(closure, index of the multiplier in it, equation) for all multipliers.
   template <class Visit>
   void for_each(const Visit& visit) const;
 

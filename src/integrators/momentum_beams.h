@@ -1,5 +1,5 @@
 #pragma once
-/// All beams of a model over a step of the thesis's momentum-conserving schemes (Muñoz 2004, ch. 6).
+/// All beams of a model over a step of the momentum-conserving schemes of the thesis (Muñoz 2004, ch. 6).
 
 #include "elements/momentum_beam.h"
 #include "elements/rotary_inertia.h"
@@ -15,7 +15,7 @@ class MomentumBeams : public BeamFamily {
 
   void initialise(State& state) override { points_.reference.initialise(state); }
   void forget_path(State& state) override { points_.reference.forget_path(state); }
-  /// Energy corrections differentiate the tangent's own stresses: they carry nothing.
+  /// Strains are carried only without energy correction, since corrections differentiate the stresses in the tangent.
   void begin() override { points_.begin(configuration_.scheme().correction == EnergyCorrection::None); }
   void add_forces(Balance& balance) override;
   void carry_strains(const double* update) override { points_.carry_strains(configuration_.end(), update); }

@@ -1,4 +1,4 @@
-// Events of NeighbourSteps: neighbours go over them in pieces, beside the run that does the same.
+// NeighbourSteps: how neighbours pass events, in pieces together with a repetition of the run.
 #include <fmt/format.h>
 
 #include "integrators/neighbour_steps.h"
@@ -7,10 +7,11 @@
 namespace flexarm {
 namespace {
 
-/// Pieces of a sub-step between its events; twice as many show what these are off by.
+/// Pieces of a sub-step between its events. A second pass has twice as many, so that extrapolation removes most of the
+/// error.
 constexpr int kPieces = 4;
 
-/// What has happened where a law goes from one stage to another.
+/// What has happened when a law changes its stage, in words.
 const char* story(const Corner& corner, const Crossing& crossing) {
   if (!corner.is_friction) return crossing.to == EventMarch::kIn ? "touches its stop" : "leaves its stop";
   return crossing.to == 0 ? "sticks" : crossing.from == 0 ? "slips" : "turns back";
@@ -29,7 +30,7 @@ void NeighbourSteps::start_ways(const State& state) {
   }
 }
 
-/// What the run has been told in the meantime, and what its sensors have measured.
+/// Takes over commands that the run has received since the last sub-step, and samples of sensors.
 void NeighbourSteps::obey(Way& way, const State& state) {
   const auto take = [&](State& own, const State& measured) {
     own.commands = state.commands;
@@ -43,8 +44,8 @@ void NeighbourSteps::obey(Way& way, const State& state) {
   for_each_neighbour([&](Neighbour& neighbour) { take(way.neighbours[i++], neighbour.state); });
 }
 
-/// The derivative of a flow over events is not that of the steps, which go over them: neighbours go in pieces that end
-/// there, beside the run that does the same, by two numbers of pieces.
+/// The steps of the run do not end at events, so that their derivative differs from that of the motion. So the sub-step
+/// is repeated in pieces that end at events, together with the neighbours, with two numbers of pieces.
 void NeighbourSteps::go_over_events(const State& state, double step) {
   if (is_in_hit_)
     for (Way& way : ways_) obey(way, state);
@@ -77,7 +78,8 @@ void NeighbourSteps::go_on(Way& way, double step, int pieces) {
   way.stages = march_->stages();
 }
 
-/// Until run and ways are out of it: within it, derivatives would be those of another phase of it.
+/// Whether the run or a repetition is still in a hit. Within a hit, the derivatives of the pieces and those of the run
+/// belong to different phases of it.
 bool NeighbourSteps::hit_goes_on(const State& state) {
   if (state.time - hit_begin_ > longest_hit_) return false;
   return march_->is_hit(state, nullptr) || march_->is_hit(ways_[0].ahead, &ways_[0].stages) ||
@@ -120,7 +122,7 @@ void NeighbourSteps::cross(const Crossing& crossing) {
         {crossing.time, model_.coordinates[corner.coordinate].name, story(corner, crossing), crossing.doubt});
 }
 
-/// It comes to the event earlier or later than the run by dt, and has other rates in the meantime.
+/// The neighbour reaches the event earlier or later than the run by a time dt, in which its rates differ by the jump.
 void NeighbourSteps::jump(Neighbour& neighbour, const Crossing& crossing) {
   const Model& model = neighbour.system ? neighbour.system->configuration().model() : model_;
   const double guard = march_->guard(crossing.corner, crossing.from, model, neighbour.state);
@@ -133,7 +135,7 @@ void NeighbourSteps::jump(Neighbour& neighbour, const Crossing& crossing) {
   for (Released& released : neighbour.state.released) released.rotation.normalize();
 }
 
-/// Steps that run backwards have no march.
+/// Notes events of stops for schemes with backward sub-steps, which have no march.
 void NeighbourSteps::note_stops(const State& state, const StepSystem& solved) {
   for (const Coordinate& coordinate : model_.coordinates) {
     if (!coordinate.limit) continue;
@@ -143,30 +145,32 @@ void NeighbourSteps::note_stops(const State& state, const StepSystem& solved) {
     };
     const int end = side(solved.configuration().released());
     if (side(state.released) != end)
-      events_.push_back({state.time, coordinate.name, end == 0 ? "leaves its stop" : "touches its stop",
-                         "some sub-steps of the scheme run backwards: the derivative is that of the steps, which go "
-                         "over it"});
+      events_.push_back(
+          {state.time, coordinate.name, end == 0 ? "leaves its stop" : "touches its stop",
+           "the scheme also steps backwards in time: the derivative is that of the steps, which ignore the "
+           "event's time"});
   }
 }
 
-/// Friction within motors has no march: its events are those of the steps.
+/// Notes events of friction within motors, which has no march. Derivatives are those of the steps.
 void NeighbourSteps::note_motors(const State& state) {
   motor_rests_.resize(state.actuators.size(), -1);
   for (std::size_t i = 0; i < state.actuators.size(); ++i) {
     const double rest = state.actuators[i].rest;
     if (motor_rests_[i] >= 0 && rest != motor_rests_[i])
-      events_.push_back({state.time, model_.coordinates[model_.actuators[i].coordinate].name,
-                         rest > 0 ? "its motor sticks" : "its motor slips",
-                         "friction within a motor: the derivative is that of the steps, which go over it"});
+      events_.push_back(
+          {state.time, model_.coordinates[model_.actuators[i].coordinate].name,
+           rest > 0 ? "its motor sticks" : "its motor slips",
+           "friction within a motor: the derivative is that of the steps, which ignore the event's time"});
     motor_rests_[i] = rest;
   }
 }
 
-/// Hits have no march: they are right to a percent, whatever part of a step they begin in, but differ by as much from
-/// part to part.
+/// Notes hits between links, which have no march. A hit has an error of about one percent, which depends on the part of
+/// a step in which it begins.
 void NeighbourSteps::note_hits(const State& state) {
   const ForceElementList& elements = model_.force_elements;
-  if (touches_.empty()) {  // what touches at the start does not hit
+  if (touches_.empty()) {  // contacts at the start are no hits
     touches_.assign(elements.size(), 1);
     return;
   }
@@ -178,7 +182,7 @@ void NeighbourSteps::note_hits(const State& state) {
     touches_[i] = touches ? 1 : 0;
     if (begins)
       events_.push_back({state.time, fmt::format("{}", fmt::join(elements[i]->links(), " and ")), "hit each other",
-                         "the derivative is that of the steps, for which it matters in which part of one they hit"});
+                         "the derivative is that of the steps, and depends on the time of the hit within its step"});
   }
 }
 

@@ -14,20 +14,22 @@
 namespace flexarm {
 namespace {
 
-/// Updates are repeated until the next one would be this short, or those below the second do not shrink any more: what
-/// they leave has the same sign step by step, and is divided by 1e-5.
+/// Updates are repeated until the expected next one is shorter than kRemainder, or until updates below kStagnation
+/// shrink no further. The limits are small because the remaining error has the same sign in each step and is divided by
+/// the difference of the neighbours, 1e-5.
 constexpr double kRemainder = 1e-18, kStagnation = 1e-12, kStalled = 0.5;
 constexpr int kMostUpdates = 30;
-/// Sub-steps after which neighbours are put beside the run anew: phases of vibrations, which differ by up to half a
-/// radian in a step for a factor e of a stiffness, have the error (sub-steps / 2 difference)^2 / 6.
+/// Neighbours are put beside the run again after this number of sub-steps. For a stiffness that differs by a factor e,
+/// the phases of vibrations differ by up to half a radian per step. The error of the derivative is then (sub-steps / 2
+/// difference)^2 / 6.
 constexpr long kTogether = 8;
-/// Updates of a neighbour with factors of the very step.
+/// Number of updates that a neighbour needs if the factors were made in the same step.
 constexpr int kFewestUpdates = 2;
 
-/// After so many contact times what is still on its stop swings no more.
+/// After this many contact times, a coordinate on its stop no longer oscillates.
 constexpr double kLongestHit = 6;
 
-/// Nobody has told the run anything since, and its positions are about the same origin.
+/// Whether the neighbours have the same commands and the same origin as the run.
 bool obey_the_same(const Direction& direction, const State& state) {
   const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   const auto like = [&](const auto& a, const auto& b, const auto& is_same) {
@@ -51,7 +53,7 @@ bool obey_the_same(const Direction& direction, const State& state) {
   });
 }
 
-/// Which of two opposite quaternions it is.
+/// Chooses that of the two quaternions of a rotation that is closer to `other`.
 void take_sign(Quaternion& rotation, const Quaternion& other) {
   if (rotation.dot(other) < 0) rotation.coeffs() *= -1;
 }
@@ -69,7 +71,7 @@ NeighbourSteps::NeighbourSteps(const Model& model, const Scheme& scheme)
                     "depend on Newton's iterates",
                     scheme.name));
   for (IncrementHistory* history : {&made_, &guess_}) history->push(0, system_.degrees_of_freedom().unknowns);
-  if (scheme.is_composition) return;  // some of its sub-steps run backwards
+  if (scheme.is_composition) return;  // it has backward sub-steps, which events cannot divide
   march_ = std::make_unique<EventMarch>(model, scheme);
   if (!march_->has_corners()) march_.reset();
   if (march_) system_.hold_modes(&march_->modes());
@@ -82,7 +84,7 @@ void NeighbourSteps::measure(Direction& direction, const State& state) {
   std::vector<double>& sum = direction.derivative;
   sum.assign(numbers_.size(), 0.0);
   for (Neighbour& neighbour : direction.neighbours) {
-    neighbour.state.wrenches = state.wrenches;  // there may be others since the last step
+    neighbour.state.wrenches = state.wrenches;  // they may have been replaced since the last step
     for (std::size_t n = 0; n < state.nodes.size(); ++n)
       take_sign(neighbour.state.nodes[n].orientation, state.nodes[n].orientation);
     for (std::size_t j = 0; j < state.released.size(); ++j)
@@ -96,7 +98,7 @@ void NeighbourSteps::measure(Direction& direction, const State& state) {
     });
   }
   for (double& number : sum)
-    if (!std::isfinite(number)) number = 0;  // commands where none hold
+    if (!std::isfinite(number)) number = 0;  // NaN stands for commands that are not given
 }
 
 void NeighbourSteps::place(Direction& direction, const State& state) {
@@ -115,13 +117,13 @@ void NeighbourSteps::place(Direction& direction, const State& state) {
   }
 }
 
-/// Where joints have them, as in the run: what they were off by, of third order, would be divided by the step.
+/// Places slaves exactly where their joints have them. Otherwise an error of third order would be divided by the step.
 void NeighbourSteps::place_slaves(Neighbour& neighbour) {
   const Model& model = neighbour.system ? neighbour.system->configuration().model() : model_;
   State& own = neighbour.state;
   for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = node_pose(own.nodes[i]);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    if (model.joints[j].kind == JointMapKind::Slide) continue;  // a slave may move a little beside its line
+    if (model.joints[j].kind == JointMapKind::Slide) continue;  // a slave may lie slightly beside its line
     const int slave = model.joints[j].slave;
     NodePose& pose = poses_[slave];
     const Quaternion before = pose.orientation;
@@ -247,13 +249,14 @@ std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, co
   const double step = solved.configuration().step();
   guess_ = made_;
   guess_.steps[0] = step;
-  if (state.history.holds_for(update_.size()) && state.history.steps[0] == step)  // it is off as in the last one
+  if (state.history.holds_for(update_.size()) && state.history.steps[0] == step)  // same difference as in the last step
     for (std::size_t i = 0; i < guess_.increments[0].size(); ++i)
       guess_.increments[0][i] += neighbour.state.history.increments[0][i] - state.history.increments[0][i];
   system.begin_beside(solved, neighbour.state, guess_);
   for (int retries = 0; !solve(system); ++retries) {
     if (retries > 0 || !make_factors(state, solved))
-      return "a neighbour is not found by the factors of the run: the equations change within their difference";
+      return "the derivative cannot be computed with the run's factorisation: the equations change within the "
+             "difference";
     system.begin_beside(solved, neighbour.state, made_);
   }
   if (const char* change = system.revise()) return fmt::format("{} within the difference of neighbours", change);

@@ -1,6 +1,6 @@
 #pragma once
-/// Neighbours of a run. Their steps are solved with the factors of the run's own tangent; the differences are
-/// derivatives with respect to parameters and start. (docs/notes/sensitivities.md)
+/// Steps neighbours of a run, which have slightly different parameters or initial states. Differences of neighbours
+/// yield the derivatives of the run. (docs/notes/sensitivities.md)
 
 #include <array>
 #include <memory>
@@ -14,56 +14,56 @@
 
 namespace flexarm {
 
-/// Another run of a like mechanism, close to the one whose derivative is sought.
+/// A run of a similar mechanism with slightly other parameters or another initial state.
 struct Neighbour {
-  double offset = 0;                   ///< how far it is off, in units of Direction::difference
-  double weight = 0;                   ///< in the derivative: of how far off it has come, over Direction::difference
-  std::unique_ptr<StepSystem> system;  ///< of its own model; null: it has that of the run
+  double offset = 0;                   ///< distance from the run, in units of Direction::difference
+  double weight = 0;                   ///< weight in the derivative: of its deviation / Direction::difference
+  std::unique_ptr<StepSystem> system;  ///< of its own model; null: it has the same model as the run
   State state;
 };
 
-/// What a run is differentiated by, and the derivative of its state as a difference of neighbours.
+/// A parameter or initial state, and the derivative of the run's state with respect to it.
 struct Direction {
-  double difference = 0;             ///< in the parameter's unit, or that of the state's coordinate
-  bool has_free_difference = false;  ///< it may be chosen anew in any step: neighbours have the run's own model
+  double difference = 0;             ///< in the unit of the parameter or of the initial state
+  bool has_free_difference = false;  ///< it may be changed in any step, since neighbours have the model of the run
   std::vector<Neighbour> neighbours;
   std::vector<double> derivative = {};  ///< of all numbers of the state (model/state_numbers.h), see measure()
 };
 
-/// Takes neighbours along with a run. The derivative of a step's solution is what the equations of the neighbours come
-/// to beside it, whose own Newton's method it is, with the factors of the run's tangent. Every few sub-steps
-/// they are put anew to the state of the run, +- difference times the derivative: so they stay as close however long
-/// the run is. Sub-steps with events of stops and dry friction they go in pieces, with the time of the event as it
-/// changes (EventMarch). Allocates nothing once they have been put back for the first time, but for the list of events.
+/// Steps neighbours beside a run. Each sub-step of a neighbour is solved by Newton's method with the factors of the
+/// run's tangent. Every few sub-steps neighbours are put back to the state of the run, +- difference times the
+/// derivative, so that they stay close to it during a long run. Sub-steps with events of stops and dry friction are
+/// repeated in pieces, which account for the change of the event's time (EventMarch). Allocates no memory after
+/// neighbours were put back for the first time, except for the list of events.
 class NeighbourSteps : public StepFollower, private MarchFollower {
  public:
-  /// Of a run of that model and scheme; the model must outlive this.
+  /// For runs of that model and scheme; the model must outlive this object.
   /// @throws ModelError if the scheme has no derivatives.
   NeighbourSteps(const Model& model, const Scheme& scheme);
 
   std::vector<Direction>& directions() { return directions_; }
   const std::vector<Direction>& directions() const { return directions_; }
-  /// Why there are no derivatives any more; empty: there are.
+  /// Why the derivatives were lost; empty if they are valid.
   const std::string& lost() const { return lost_; }
   void lose(const std::string& why) {
     if (lost_.empty()) lost_ = why;
   }
-  /// In the order in which they came.
+  /// All events so far, in chronological order.
   const std::vector<RunEvent>& events() const { return events_; }
-  /// Call it before you use the neighbours: the run has come to `state`.
+  /// Brings the neighbours to the end of the last step, where the run is in `state`. To be called before they are read.
   void settle(const State& state);
-  /// True in a hit, which has a course of its own: models of neighbours must stay.
+  /// Whether the run is in a hit. During a hit the models of neighbours must not be replaced.
   bool is_in_hit() const { return is_in_hit_; }
 
-  /// Direction::derivative from what the neighbours and the run, in `state`, have come to.
+  /// Computes Direction::derivative from the states of the neighbours and that of the run, `state`.
   void measure(Direction& direction, const State& state);
-  /// Puts the neighbours beside the run, in `state`, by difference and derivative.
+  /// Places the neighbours beside the run, which is in `state`, according to difference and derivative.
   void place(Direction& direction, const State& state);
-  /// How far neighbours are off at best, where their difference may be chosen: the third derivative of what beams do,
-  /// (way over radius of gyration)^2, and round-off of velocities, round-off over step over way, are alike there.
+  /// Best distance of neighbours whose difference may be chosen. It balances two errors: the third derivative of beams,
+  /// (distance / radius of gyration)^2, and the round-off of velocities, round-off / step / distance.
   static constexpr double kDistance = 1e-5;
-  /// How far the neighbours are off the run, in `state`: the largest displacement over the model's length scale or
-  /// rotation [rad], that which velocities make in `step` [s] included.
+  /// Distance of the neighbours from the run, which is in `state`: the largest displacement divided by the model's
+  /// length scale, or rotation [rad]. Includes the displacements due to velocities over `step` [s].
   double distance(const Direction& direction, const State& state, double step) const;
 
   void begin_step() override;
@@ -75,7 +75,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
  private:
   void follow_piece(const State& state, const StepSystem& solved) override;
   void cross(const Crossing& crossing) override;
-  /// The run once more over events and hits, by one number of pieces, and its neighbours in their order.
+  /// The repetition of a run over events and hits with one number of pieces, and its neighbours in their order.
   struct Way {
     State ahead;
     std::vector<State> neighbours;
@@ -93,9 +93,9 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   void put_beside(Direction& direction, const State& state, double step);
   void place_slaves(Neighbour& neighbour);
   bool make_factors(const State& state, const StepSystem& solved);
-  /// Why it does not go along, or nothing.
+  /// Steps a neighbour. Returns the reason if that fails, otherwise an empty string.
   std::string advance(Neighbour& neighbour, const State& state, const StepSystem& solved);
-  /// False if it does not converge.
+  /// Returns false if the iteration does not converge.
   bool solve(StepSystem& system);
   template <class Visit>
   void for_each_neighbour(const Visit& visit) {
@@ -104,27 +104,28 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   }
 
   const Model& model_;
-  StepSystem system_;  // the run's once more: its factors are kept here
+  StepSystem system_;  // same model as the run's; contains the factors for all neighbours
   std::vector<Direction> directions_;
   std::string lost_;
-  double factorised_step_ = 0;     // for which the factors hold [s]; 0: none
-  long followed_ = 0;              // sub-steps
-  int updates_ = 0;                // of the present sub-step, by all neighbours
-  IncrementHistory made_, guess_;  // by the run in the present sub-step; the same of a neighbour, as is expected
+  double factorised_step_ = 0;  // step size for which the factors are valid [s]; 0: no factors
+  long followed_ = 0;           // number of sub-steps
+  int updates_ = 0;             // in the present sub-step, of all neighbours
+  // Increments of the run in the present sub-step, and the expected increments of a neighbour.
+  IncrementHistory made_, guess_;
   Eigen::VectorXd update_;
   std::vector<NodePose> poses_;  // scratch
   std::vector<double> numbers_;  // scratch
-  std::vector<State> kept_;      // at the beginning of a step that may be taken back
+  std::vector<State> kept_;      // states at the beginning of a step that may be taken back
   // ---- events
-  std::unique_ptr<EventMarch> march_;  // null where there are none
-  std::array<Way, 2> ways_;            // by pieces and by twice as many
-  State begin_;                        // of a sub-step of a way
-  bool is_ahead_ = false;              // neighbours are beside ways
-  bool is_in_hit_ = false;             // ways go on
+  std::unique_ptr<EventMarch> march_;  // null if there can be no events
+  std::array<Way, 2> ways_;            // the second one has twice as many pieces
+  State begin_;                        // of the present sub-step of a way
+  bool is_ahead_ = false;              // states of neighbours belong to ways, not to the run
+  bool is_in_hit_ = false;             // the ways continue in the next sub-step
   double hit_begin_ = 0;               // [s]
   double longest_hit_ = 0;             // [s]
   bool notes_events_ = false;
-  std::vector<std::vector<double>> coarse_;  // derivatives by the first way, per direction
+  std::vector<std::vector<double>> coarse_;  // per direction: derivative by the first way
   std::vector<double> motor_rests_;
   std::vector<char> touches_;  // per force element
   std::vector<RunEvent> events_;

@@ -7,39 +7,40 @@
 namespace flexarm {
 namespace {
 
-/// If limits are requested, larger updates of a rotation are scaled down to this [rad]: beyond it the directions of the
-/// residual have turned so far that the linear model is useless.
+/// With Updates::Limited, an update that rotates more than this is scaled down to this angle [rad]. Beyond it, the
+/// directions of the residual have turned so far that the linear model is useless.
 constexpr double kLargestRotationUpdate = 1.0;
-/// The iteration is given up when an update is larger than the first one by this factor, ...
+/// The iteration is aborted when an update is larger than the first one by this factor.
 constexpr double kDivergence = 1e4;
-/// ... which counts as at least this, since a good guess makes it tiny [- or rad].
+/// In this comparison the first update counts as at least this, since a good guess makes it tiny [- or rad].
 constexpr double kSmallestFirstUpdate = 1e-3;
-/// Full updates jump to and fro between two sides of a steep law; smaller ones land between. So from this iteration on,
-/// if an update left more than this share of itself, the next one is damped by half as much again, down to the
-/// strongest damping. After this many good updates in a row the damping is reduced. Measured: docs/notes/newton.md 6.
+/// On a steep law, full updates jump back and forth between two sides of it; smaller updates land between. So after
+/// kPatience iterations, if an update left more than the share kStalled of itself, the next one is damped by half as
+/// much again, down to kStrongestDamping. After kDoneWell good updates in a row the damping is reduced. Measured:
+/// docs/notes/newton.md 6.
 constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
 constexpr double kStrongestDamping = 0.125;
 constexpr int kDoneWell = 2;
-/// If updates by kept factors grow by this factor, the solve starts anew with new factors: the kept ones belong to
+/// If updates by kept factors grow by this factor, the solve starts again with new factors: the kept ones belong to
 /// another branch.
 constexpr double kAstray = 10;
-/// An update by kept factors is useless if it is larger than this share of the update before. If the update before was
-/// by new factors, the useless one is not applied. If the solve began with kept factors it starts anew: little is lost,
-/// and in a stiff system the strains of bad updates would take more iterations to remove.
+/// An update by kept factors is useless if it is larger than this share of the update before. If the update before used
+/// new factors, the useless one is not applied. If the solve began with kept factors, it starts again with new ones.
+/// Little is lost by that, and in a stiff system the strains of bad updates would take more iterations to remove.
 constexpr double kUseless = 0.5;
 /// Updates below this that no longer shrink are round-off of a stiff system: its condition number, up to 1e4 in the
 /// test scenes of stiff bodies, times the round-off of a double.
 constexpr double kStagnation = 1e-12;
-/// After an earlier solve has shown how much its first update leaves, this many solves may end after one update; then
-/// one makes a second update and shows it anew.
+/// When an earlier solve has shown how much its first update leaves, this many solves may end after one update. Then
+/// one solve makes a second update and measures again.
 constexpr int kTrust = 8;
-/// The next solve may be worse than the observed one by this factor.
+/// Safety factor: the next solve may be worse than the observed one by this factor.
 constexpr double kCaution = 3;
 /// This many solves rely on the contraction by kept factors that an earlier solve has shown.
 constexpr int kTrustInContraction = 32;
-/// The expected contraction by kept factors is at least this, since an earlier solve that reached round-off shows too
-/// little.
+/// Lower bound of the expected contraction by kept factors. An earlier solve that reached round-off shows too small a
+/// contraction.
 constexpr double kExpectedShare = 0.1;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
@@ -107,7 +108,7 @@ bool NewtonIteration::diverges(const Progress& progress) const {
   return progress.norm > kDivergence * std::max(norms_.front(), kSmallestFirstUpdate);
 }
 
-/// Kept factors lead astray if updates grow this much; then the solve starts anew. Round-off may grow.
+/// Whether updates by kept factors grow so much that the solve has to start again. Growth of round-off does not count.
 bool NewtonIteration::is_led_astray(const Progress& progress) const {
   return progress.kept_before && kept_leave_more_than(progress.iteration == 1 ? kUseless : kAstray, progress);
 }
@@ -121,10 +122,10 @@ bool NewtonIteration::kept_leave_more_than(double share, const Progress& progres
          progress.norm > kStagnation;
 }
 
-/// A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
+/// Damps the update on steep laws (friction near sticking, first touch of a stop). Statics has no such laws.
 void NewtonIteration::damp(Progress& progress) {
   if (system_.configuration().step() == 0) return;
-  // What an update has left out is there again in the next one.
+  // The part of an update that damping has left out appears again in the next update.
   const double limit = 1 - progress.damping + progress.damping * kStalled;
   if (progress.since_revision >= kPatience && progress.contraction > limit) {
     progress.damping = std::max(0.5 * progress.damping, kStrongestDamping);
@@ -137,8 +138,8 @@ void NewtonIteration::damp(Progress& progress) {
   progress.fraction *= progress.damping;
 }
 
-/// The second update of a solve is what the first one left. Without factors that are kept nothing is learned, either:
-/// then a step follows from the state alone, and a restored one continues bit for bit.
+/// Learns from the second update of a solve, which shows the error that the first one left. Nothing is learned if
+/// factors are never kept: a step then depends on the state alone, so that a restored run continues bit for bit.
 void NewtonIteration::learn(Progress& progress) {
   if (progress.iteration == 0) progress.first_residual = system_.residual().norm();
   if (!settings_.reuse_factorisation) return;
@@ -156,8 +157,8 @@ void NewtonIteration::learn(Progress& progress) {
   }
 }
 
-/// The ratio of two updates shows how much kept factors contract, except for their first update after new factors,
-/// which is what those left, and except for round-off.
+/// The ratio of two updates shows the contraction by kept factors. Exceptions are the first update with kept factors
+/// after new ones, whose size depends on the new factors, and round-off.
 bool NewtonIteration::renews_factors(const Progress& progress) const {
   UpdateOutlook update;
   update.norm = progress.norm;
@@ -168,8 +169,9 @@ bool NewtonIteration::renews_factors(const Progress& progress) const {
   return factor_reuse_.renew(progress.iteration + 1, update);
 }
 
-/// Called after the evaluation that follows an update. The residual shows what an earlier solve could not know, such as
-/// a stop that is touched, and what updates do not show: that the last one brought a point into contact.
+/// Whether the residual after an update is as small as expected. Called after the evaluation that follows an update.
+/// The residual shows what earlier solves could not know, such as a touched stop. It also shows what updates do not:
+/// that the last one brought a point into contact.
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
   if (progress.iteration > 0)
     return progress.residual == 0 || progress.norm <= kStagnation ||
@@ -180,42 +182,43 @@ bool NewtonIteration::is_as_expected(const Progress& progress) const {
   return system_.residual().norm() <= expected;
 }
 
-/// Norm of the error that an update leaves, at least the part of the update that was not applied.
+/// Norm of the error that an update leaves; at least the part of the update that was not applied.
 double NewtonIteration::remainder_after(const Progress& progress) const {
   return progress.norm * std::max(contraction_after(progress), 1 - progress.fraction);
 }
 
-/// Contraction of a whole update, from the last two updates or from an earlier solve.
+/// Contraction of a full update, from the last two updates or from an earlier solve.
 double NewtonIteration::contraction_after(const Progress& progress) const {
   if (progress.iteration == 0) {
     const FirstUpdate& start = starts_[progress.with_kept];
     if (!start.is_known || start.age > kTrust) return 1.0;
-    const double growth = std::max(1.0, progress.norm / start.norm);  // new factors: of the contraction, too
+    const double growth =
+        std::max(1.0, progress.norm / start.norm);  // with new factors, contraction grows with the norm
     return std::min(1.0, kCaution * growth * start.contraction);
   }
   const double shown = std::min(progress.contraction, 1.0);
   if (progress.with_kept && progress.iteration == 1) {
-    // The first update takes away the error of the guess, which is smooth, best of all: kept factors are slower from
-    // there.
+    // The first update removes the smooth error of the guess best of all. Later updates with kept factors contract
+    // less.
     const KeptContraction& kept = kept_contractions_[progress.started_with_kept];
     const bool is_known = kept.is_known && kept.age <= kTrustInContraction;
     return is_known ? std::max(shown, kExpectedShare * kept.contraction) : 1.0;
   }
-  // New factors square the error, kept ones contract it. Symmetric middle functions are not in the tangent: they leave
-  // linear convergence with new factors, too.
+  // New factors square the error, kept ones contract it. Symmetric middle functions are not part of the tangent, so
+  // that convergence is linear even with new factors.
   const bool squares = !progress.with_kept && system_.configuration().scheme().mid_functions == MidFunctions::Explicit;
   return squares ? shown * shown : shown;
 }
 
-/// The remaining error of a solve, divided by the step, is an error of the velocity. So sub-steps must leave less, in
-/// proportion.
+/// Target for the remaining error of a solve. Divided by the step, this error is an error of the velocity. So shorter
+/// sub-steps have a proportionally smaller target.
 double NewtonIteration::target() const {
   const double step = std::abs(system_.configuration().step());
   const double part = step > 0 ? std::min(step / settings_.step, 1.0) : 1.0;
   return std::max(part * settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 
-/// If factors may be kept, convergence is to round-off, also after a solve has started anew without them.
+/// Where factors may be kept, convergence is to round-off, even in a solve that has started again without them.
 bool NewtonIteration::has_converged(const Progress& progress, Factors factors) const {
   const bool may_have_begun_anew = settings_.reuse_factorisation && system_.configuration().step() != 0 &&
                                    progress.iteration + 1 < settings_.max_iterations;

@@ -1,5 +1,5 @@
 #pragma once
-/// Newton's method for the equations of a step.
+/// Newton's method for the equations of a step, with reuse of factorisations.
 
 #include <array>
 #include <vector>
@@ -12,60 +12,62 @@
 
 namespace flexarm {
 
-/// Solves a StepSystem from its present trial configuration, with new factors or those of an earlier solve.
+/// Solves a StepSystem, starting from its present trial configuration. New factors are those of the present tangent;
+/// kept factors are those of an earlier iteration or solve.
 class NewtonIteration {
  public:
   enum class Updates {
     Full,
-    Limited  ///< large rotations are scaled down
+    Limited  ///< updates with large rotations are scaled down
   };
-  /// Where a solve may start with the factors of an earlier one.
+  /// Whether a solve may start with the factors of an earlier one.
   enum class Factors { Fresh, MayBeKept };
 
-  /// Both must outlive the iteration.
+  /// `system` and `settings` must outlive the iteration.
   NewtonIteration(StepSystem& system, const StepSettings& settings);
 
-  /// Leaves the system evaluated at the solution. Counts iterations and factorisations in `result`, and puts the reason
-  /// there if it fails.
+  /// Leaves the system evaluated at the solution. Adds iterations and factorisations to `result`. Returns false after a
+  /// failure, and writes its reason to `result`.
   bool solve(Updates updates, Factors factors, StepResult& result);
-  /// In the last solve: an update by kept factors.
+  /// Whether the last solve made an update with kept factors.
   bool made_kept_updates() const { return made_kept_updates_; }
   /// Discards the factors of earlier steps.
   void forget_factors();
   /// Update norms of the last solve.
   const std::vector<double>& update_norms() const { return norms_; }
-  /// Null: nobody.
+  /// Sets the observer of phases; null: none.
   void observe(StepObserver* observer) { observer_ = observer; }
 
  private:
   using Reason = StepResult::Reason;
-  /// What an update tells of how the iteration goes.
+  /// The present update of a solve, and how the iteration goes.
   struct Progress {
-    int iteration = 0;               // of the solve
-    int since_revision = 0;          // updates of the same equations before this one
-    bool with_kept = false;          // factors
-    bool kept_before = false;        // of the update before this one
+    int iteration = 0;               // number of the update in this solve, from 0
+    int since_revision = 0;          // number of earlier updates of the same equations
+    bool with_kept = false;          // whether this update uses kept factors
+    bool kept_before = false;        // whether the update before this one did
     double norm = 0;                 // of the update
-    double fraction = 1;             // of the solution that it is
-    double damping = 1;              // share of an update that is made at a steep law
-    int done_well = 0;               // updates in a row with this damping that did
-    double contraction = 1;          // its ratio to the one before; 1 where there is none
-    bool started_with_kept = false;  // factors of the solve's first update
-    double first_residual = 0;       // norm before it
-    double residual = 0;             // norm before the update; where something may be hit
+    double fraction = 1;             // share of the full Newton update that is applied
+    double damping = 1;              // share that damping on steep laws leaves
+    int done_well = 0;               // number of consecutive good updates with this damping
+    double contraction = 1;          // ratio of this update's norm to that of the one before; 1 if there is none
+    bool started_with_kept = false;  // whether the first update of the solve used kept factors
+    double first_residual = 0;       // norm of the residual before the first update
+    double residual = 0;             // norm of the residual before this update; only if something may be hit
   };
 
-  /// How a solve went on after its first update: the expectation for the next solve with the same kind of start.
+  /// How a solve continued after its first update: the expectation for the next solve that starts with the same
+  /// factors.
   struct FirstUpdate {
     double norm = 0, contraction = 1;
-    double residual_ratio = 1;  // of the residual after it to that before
-    int age = 0;                // solves since, that did without a second update
+    double residual_ratio = 1;  // norm of the residual after the first update / before it
+    int age = 0;                // number of solves since then that ended after one update
     bool is_known = false;
   };
-  /// The contraction by kept factors in the third update of a solve, which is what the second one left.
+  /// The contraction by kept factors in the third update of a solve, which shows the error that the second one left.
   struct KeptContraction {
     double contraction = 1;
-    int age = 0;  // solves since that started alike
+    int age = 0;  // number of solves since then with the same kind of start
     bool is_known = false;
   };
 
@@ -91,12 +93,12 @@ class NewtonIteration {
   StepSystem& system_;
   const StepSettings& settings_;
   FactorReuse factor_reuse_;
-  double factorised_step_ = 0;  // for which the factors hold; 0: none
+  double factorised_step_ = 0;  // step size for which the factors are valid; 0: no factors
   bool made_kept_updates_ = false;
   Eigen::VectorXd update_;
   std::vector<double> norms_;
-  std::array<FirstUpdate, 2> starts_;                 // with fresh and with kept factors
-  std::array<KeptContraction, 2> kept_contractions_;  // of solves that start so
+  std::array<FirstUpdate, 2> starts_;                 // [0]: started with new factors, [1]: with kept ones
+  std::array<KeptContraction, 2> kept_contractions_;  // likewise
   StepObserver* observer_ = nullptr;
 };
 

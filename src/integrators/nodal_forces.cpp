@@ -110,7 +110,7 @@ void NodalForces::add_work(double& work) const {
     increment << end.position - begin.position, configuration_.increments()[load.node];
     if (configuration_.scheme().is_incremental()) {
       wrench = load_action(load, value.mean, begin.rotation, end.rotation, LoadPoint::Mean).wrench;
-    } else {  // the mean force in the mean of both directions
+    } else {  // the mean force, averaged over the directions at both ends
       increment.tail<3>() = cayley::to_rotation_vector(configuration_.increments()[load.node]);
       wrench = 0.5 * (load_action(load, value.mean, begin.rotation, end.rotation, LoadPoint::End).wrench +
                       load_action(load, value.mean, end.rotation, begin.rotation, LoadPoint::End).wrench);

@@ -1,5 +1,5 @@
 #pragma once
-/// Weights, loads and dampers at the nodes of a model over a step, and wrenches from outside.
+/// Weights, loads, dampers and externally applied wrenches at the nodes of a model over a step.
 
 #include "elements/load.h"
 #include "integrators/hht_interpolation.h"
@@ -9,17 +9,17 @@ namespace flexarm {
 
 class NodalForces {
  public:
-  /// `interpolation`: null unless forces are interpolated in time.
+  /// `interpolation`: null unless the scheme interpolates forces in time.
   NodalForces(const StepConfiguration& configuration, const StepHistories& histories, HhtInterpolation* interpolation);
 
   void evaluate(Balance& balance) const;
-  /// Adds the work of loads over the step to `work` [J]; that of weights is in the potential energy.
+  /// Adds the work of loads over the step to `work` [J]. Weights are not included: they have a potential energy.
   void add_work(double& work) const;
-  /// {force, moment about the node} of loads and wrenches on these links, which one node carries.
+  /// {force, moment about the node} of all loads and wrenches on the given links, which one node carries.
   Vector6 loads_on(const std::vector<bool>& links) const;
 
  private:
-  /// visit(load, its history's StepForce)
+  /// Calls visit(load, StepForce of its history) for all loads and wrenches.
   template <class Visit>
   void for_each_load(const Visit& visit) const;
   void add_weight(int node, Balance& balance) const;

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// Four numbers of each lane, lane by lane; get(lane) points to them.
+/// Gathers four numbers per lane; get(lane) points to them.
 template <class Get>
 [[gnu::always_inline]] inline std::array<Pack, 4> gathered_four(const Get& get) {
   std::array<Pack, 4> out;
@@ -43,7 +43,7 @@ void PlanarBeams::set_packs(const std::vector<BeamElement<Nodes>>& elements, Gro
   constexpr int lanes = Pack::kLanes;
   const int count = static_cast<int>(elements.size());
   packs.resize((count + lanes - 1) / lanes);
-  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  // The whole group has the same terms, so that the results of an element do not depend on its neighbours in the pack.
   bool is_damped_evenly = true, has_stiffness_damping = false, has_mass_damping = false;
   for (std::size_t p = 0; p < packs.size(); ++p) {
     ElementPack<Nodes>& pack = packs[p];
@@ -127,8 +127,8 @@ void PlanarBeams::set_begin_points() {
   });
 }
 
-/// The middle functions are Lagrange's; their stretch, squared, makes their derivatives shorter. See
-/// stretch_mid_functions().
+/// Sets the ratio of the middle functions' derivatives to those of Lagrange's functions. In the plane the values are
+/// Lagrange's; the stretch applies to the derivatives alone, twice. See stretch_mid_functions().
 void PlanarBeams::set_slopes() {
   if (rule_.correction != EnergyCorrection::Multiplier || rule_.mid_functions != MidFunctions::Explicit) return;
   const StepMotion step = configuration_.motion();
@@ -145,7 +145,7 @@ void PlanarBeams::set_slopes() {
   });
 }
 
-/// Poses at the end, and the increments.
+/// Computes the poses at the end of the step, and the rotation increments.
 void PlanarBeams::set_end() {
   const std::vector<NodePose>& end = configuration_.end();
   for (std::size_t i = 0; i < end.size(); ++i) {
@@ -210,7 +210,7 @@ void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const Memory<Nodes>& m
 template <int Nodes>
 void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& from,
                           std::vector<NodeForce>& to) const {
-  std::array<double*, Pack::kLanes> targets = {};  // of unused lanes, too: compilers do not see that nobody reads them
+  std::array<double*, Pack::kLanes> targets = {};  // initialised for compilers that warn about unused lanes
   for (int i = 0; i < Nodes; ++i) {
     for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = to[pack.nodes[lane][i]].at;
     add_lanes<4>(from[i].data(), pack.lanes, targets.data());
@@ -266,7 +266,7 @@ void PlanarBeams::hand_over(Balance& balance) const {
   }
 }
 
-/// See ConservingNode.
+/// The same equations as in ConservingNode.
 void PlanarBeams::add_inertia(Balance& balance) {
   const double rate_of_step = 1 / configuration_.step(), factor = rule_.velocity_factor() * rate_of_step;
   for (const Inertia& inertia : inertias_) {
@@ -302,11 +302,11 @@ void PlanarBeams::accept(State& state) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     NodeState& node = state.nodes[i];
     node.mean_spin = (rates_[i].increment / configuration_.step()) * plane_.normal;
-    // Of these round-off would add up from step to step.
+    // Velocities out of the plane are round-off, which would add up from step to step.
     node.velocity -= plane_.normal.dot(node.velocity) * plane_.normal;
     node.angular_velocity = material_normals_[i].dot(node.angular_velocity) * material_normals_[i];
   }
-  begin_ = 1 - begin_;  // the points of the end are those at the beginning of the next step
+  begin_ = 1 - begin_;  // points at the end of this step are points at the beginning of the next one
 }
 
 }  // namespace flexarm

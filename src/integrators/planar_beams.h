@@ -12,15 +12,16 @@
 
 namespace flexarm {
 
-/// Adds to the balance in world axes, and to a PlanarTangent in those of the plane.
+/// Adds residuals in world axes, and tangent blocks to a PlanarTangent in the axes of the plane.
 class PlanarBeams : public BeamFamily {
  public:
-  /// Of a configuration that moves in this plane, by a scheme with StressRule::Conjugate; both must outlive it.
+  /// The configuration must move in this plane, with a scheme with StressRule::Conjugate. Both objects must outlive
+  /// this.
   PlanarBeams(const StepConfiguration& configuration, const PlaneOfMotion& plane);
 
   void begin() override;
   void add_forces(Balance& balance) override;
-  /// Of the nodes; hands all forces over to the balance.
+  /// Adds the inertia of nodes. Then hands all forces over to the balance.
   void add_inertia(Balance& balance) override;
   void carry_strains(const double* update) override;
   bool carries_strains() const override { return carries_strains_; }
@@ -29,7 +30,8 @@ class PlanarBeams : public BeamFamily {
   void invalidate() override { holds_begin_points_ = false; }
 
  private:
-  /// What the node's orientation q is multiplied with for {cosine, sine} of PlanarPose: q . frame, q . (normal frame).
+  /// Quaternions whose dot products with a node's orientation are {cosine, sine} of PlanarPose: the frame of the node,
+  /// and the quaternion product of the plane's normal and this frame.
   struct Frame {
     Eigen::Vector4d cosine, sine;
   };
@@ -40,7 +42,7 @@ class PlanarBeams : public BeamFamily {
     int node;
     double mass, rotary;
   };
-  /// What is gathered of a node beside its poses: four numbers, as those.
+  /// Data of a node that is gathered in addition to its poses; four numbers, like a pose.
   struct alignas(32) NodeRate {
     double increment = 0, vx = 0, vy = 0, turning = 0;
   };
@@ -52,7 +54,7 @@ class PlanarBeams : public BeamFamily {
     std::array<int, Pack::kLanes> first_block, first_stiffness_point;
     std::array<Eigen::Matrix<double, 6, 3>, Pack::kLanes> basis;
     planar::Element<Nodes, Pack> element;
-    Pack slope = Pack(1.0);  // of the middle functions' derivatives over Lagrange's
+    Pack slope = Pack(1.0);  // ratio of the middle functions' derivatives to those of Lagrange's functions
     planar::CarriedStrains<Nodes, Pack> carried;
     std::array<std::array<planar::PointKinematics<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
   };
@@ -76,14 +78,14 @@ class PlanarBeams : public BeamFamily {
   void gather(const ElementPack<Nodes>& pack, Memory<Nodes>& memory) const;
   template <int Nodes>
   void scatter(const ElementPack<Nodes>& pack, const Memory<Nodes>& memory);
-  /// Sums of nodes.
+  /// Adds values of a pack's nodes to those of all nodes.
   template <int Nodes>
   void scatter(const ElementPack<Nodes>& pack, const std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& from,
                std::vector<NodeForce>& to) const;
-  /// Forces and tangent of a pack's elements: sums of nodes, and blocks of the balance's tangent.
+  /// Adds forces of a pack's elements to the sums of nodes, and their tangent to the balance's tangent.
   template <int Nodes>
   void scatter(const ElementPack<Nodes>& pack, const planar::BlockSystem<Nodes, Pack>& system, Balance& balance);
-  /// Adds the sums of nodes to the balance.
+  /// Adds the sums of nodes to the balance, in world axes.
   void hand_over(Balance& balance) const;
 
   const StepConfiguration& configuration_;
@@ -97,7 +99,7 @@ class PlanarBeams : public BeamFamily {
   std::vector<NodeRate> rates_;
   std::vector<NodeForce> forces_, carried_;
   std::vector<StrainMemory> end_memory_;
-  int begin_ = 0;  // which of ElementPack::points
+  int begin_ = 0;  // index into ElementPack::points of the points at the beginning
   bool has_memory_ = false;
   bool carries_strains_ = false;
   bool holds_begin_points_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Replaces beams, bodies and the tangent's backend in steps in a plane.
+/// The parts of a step in a plane: they replace the beams, bodies and the tangent's backend.
 
 #include <memory>
 
@@ -11,15 +11,15 @@ namespace flexarm {
 
 struct PlanarStep {
   PlanarStep(const StepConfiguration& configuration, PlaneOfMotion found);
-  PlanarStep(const PlanarStep&) = delete;  // the others refer to the plane
+  PlanarStep(const PlanarStep&) = delete;  // members refer to `plane`
 
-  /// Decides, by the state at its beginning alone, whether a step is taken in the plane. True if the last one was not
-  /// where this one is.
+  /// Decides whether a step is taken in the plane, from the state at its beginning alone. Returns whether this differs
+  /// from the last step.
   bool choose(const Model& model, const State& state);
-  /// Takes round-off out of the newest increments: extrapolation would magnify it, and Newton's method leaves what is
-  /// out of the plane as it is.
+  /// Removes components out of the plane, which are round-off, from the newest increments. Extrapolation would magnify
+  /// them, and Newton's method in the plane does not change them.
   void tidy(const StepConfiguration& configuration, IncrementHistory& history) const;
-  /// The state was changed by somebody else.
+  /// To be called after the state was changed by something other than a step.
   void invalidate() {
     is_sure = false;
     beams.invalidate();
@@ -28,12 +28,12 @@ struct PlanarStep {
   PlaneOfMotion plane;
   PlanarBeams beams;
   PlanarTangent tangent;
-  std::vector<Vector3> joint_normals;  ///< the normal in joints' frames
-  bool is_on = false;                  ///< the step is taken in the plane
-  bool is_sure = false;                ///< its end lies in the plane, too, unless somebody changes it
+  std::vector<Vector3> joint_normals;  ///< normal of the plane in the frame of each joint
+  bool is_on = false;                  ///< whether the step is taken in the plane
+  bool is_sure = false;                ///< whether its end lies in the plane; invalidate() resets this
 };
 
-/// Null unless steps of the model by the scheme may be taken in a plane.
+/// Null unless the model moves in a plane and the scheme supports steps in a plane.
 std::unique_ptr<PlanarStep> make_planar_step(const StepConfiguration& configuration);
 
 }  // namespace flexarm

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// The one of the rotation vectors theta, theta - 2 pi e of a rotation that is nearer to another vector.
+/// Of the two rotation vectors theta and theta - 2 pi e of a rotation, the one that is nearer to `other`.
 Vector3 nearest_vector(const Vector3& theta, const Vector3& other) {
   const double angle = theta.norm();
   if (angle < 1e-3) return theta;
@@ -114,7 +114,7 @@ void RotationReference::compute_points(std::vector<PointRotation>& stiffness, st
   for_each_element(model_.beams, [&](const auto& element) {
     using Element = std::decay_t<decltype(element)>;
     constexpr int N = Element::kNodes;
-    ElementNodes<N> nodes{};  // GCC does not always see that all of it is gathered
+    ElementNodes<N> nodes{};  // initialised because GCC does not always see that gather() sets all of it
     gather(element, nodes);
     const ReferencedRotations<N> rotations(nodes.parameters, nodes.rotation_vector);
     GeneralisedShapeFunctions<N> unused;

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-/// Newton updates of a step in which smooth friction may stop at rate zero.
+/// Number of Newton updates per attempt in which smooth friction may stop at rate zero.
 constexpr int kMostStoppedUpdates = 3;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Reversals of smooth friction, between Newton's iterations.
+/// Helps Newton's method where smooth friction reverses its direction within a step.
 
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace flexarm {
 
-/// Newton's method for tanh jumps to and fro between both ends, where it has no slope. An update that would reverse the
-/// rate stops at rate zero instead: from there, and from any smaller rate than the solution's, the method goes on to it
-/// without passing it, because tanh is concave. Only a few times: joints of a loop, or in the Newmark family, whose
-/// rates ring, can hold each other there in turns.
+/// Far from zero, tanh has no slope, so that Newton's method jumps back and forth between its two sides. So an update
+/// that would reverse the rate stops at rate zero instead. From there, the method approaches the solution without
+/// passing it, because tanh is concave. This is done only a few times in a solve. Otherwise the joints of a loop could
+/// hold each other at zero in turns, as could oscillating rates of the Newmark family.
 class SmoothReversals {
  public:
   explicit SmoothReversals(StepConfiguration& configuration);
@@ -18,16 +18,16 @@ class SmoothReversals {
   void begin() { updates_ = 0; }
   void before_update();
   void after_update();
-  /// True where so long a step goes through much of a reversal.
+  /// Whether the step is too long for a reversal that lies in it.
   bool turn_too_fast(double refinement);
 
  private:
   double rate(int coordinate) const;
 
   StepConfiguration& configuration_;
-  std::vector<int> coordinates_;  // with an unknown of their own and smooth friction
+  std::vector<int> coordinates_;  // coordinates with smooth friction and an unknown of their own
   std::vector<double> rates_;     // before the update
-  int updates_ = 0;               // of this trial
+  int updates_ = 0;               // number of updates in this attempt
 };
 
 }  // namespace flexarm

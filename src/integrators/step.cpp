@@ -1,5 +1,5 @@
 // One step from top to bottom, in the order in which it happens: begin, guess, iterate (evaluate, factorise and solve,
-// update, revise), accept. What a part of the step does in each is one line here.
+// update, revise), accept. Each part of the step has one line here for each of these.
 #include <cmath>
 
 #include "integrators/stepper.h"
@@ -21,7 +21,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
   for (const Attempt& attempt : attempts) {
     const bool is_again = &attempt == &attempts[1];
     if (is_again && !newton_.made_kept_updates()) continue;
-    if (attempt.guess == Guess::Repeated && state.history.order == 0) continue;  // it is the extrapolated one
+    if (attempt.guess == Guess::Repeated && state.history.order == 0) continue;  // the same as Extrapolated
     if (!is_again) ++result.failure.guesses;
     enter(StepPhase::Begin);
     system_.begin(state, step, attempt.guess);
@@ -82,7 +82,7 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
   norms_.clear();
   if (update_.size() == 0) return evaluate(false);
   const double step = system_.configuration().step();
-  bool makes_new = factors == Factors::Fresh;  // factors, in each iteration
+  bool makes_new = factors == Factors::Fresh;  // whether each iteration makes new factors
   Progress progress;
   bool factorise = makes_new || factor_reuse_.begin(factorised_step_ == step && system_.tangent_holds());
   progress.started_with_kept = !factorise;

@@ -12,7 +12,8 @@
 namespace flexarm {
 namespace {
 
-/// Way beyond the end of a line, relative to the last element, of a slider that leaves it at the end of the step.
+/// A slider that leaves its line at the end of the step may go this far beyond it, relative to the last element's
+/// length.
 constexpr double kLargestWayBeyond = 1.0;
 
 }  // namespace
@@ -60,7 +61,7 @@ void StepConfiguration::set_prescribed(double time) {
       released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
 }
 
-/// Continues the velocities; released coordinates of the first step start where they are.
+/// Guesses that velocities of nodes stay constant. Joint coordinates are guessed to stay where they are.
 void StepConfiguration::guess_from_velocities() {
   guess_.setZero();
   for (int i = 0; i < dof_.node_count; ++i) {
@@ -136,7 +137,7 @@ void StepConfiguration::set_slaves() {
     } else {
       end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
     }
-    // Which of two opposite quaternions it is tells how far an element is bent (LocalRotations).
+    // The sign of a quaternion matters: it tells how far an element is bent (LocalRotations).
     Quaternion& orientation = end_[joint.slave].orientation;
     orientation = so3::nearer_of_two(orientation, begin_[joint.slave].orientation);
     if (slides && off_line_joint_ < 0 && !is_on_line(joint, static_cast<int>(j))) off_line_joint_ = static_cast<int>(j);
@@ -192,7 +193,7 @@ void StepConfiguration::note_events(FirstEvent& first) const {
     if (joint.leaving < 0) continue;
     const SlideLine& line = model_.slide_lines[joint.line];
     const double from = state_->released[j].displacement[0], to = released_[j].displacement[0];
-    const double start = to - from;  // at even speed
+    const double start = to - from;  // assumes a constant rate
     if (from >= line.begin()) first.note(crossing(from, to, line.begin(), start));
     if (from <= line.end()) first.note(crossing(-from, -to, -line.end(), -start));
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Both ends of a step: the configuration at its beginning, and the trial one at its end.
+/// The two ends of a step: the configuration at its beginning, and the trial configuration at its end.
 
 #include <vector>
 
@@ -16,96 +16,98 @@
 
 namespace flexarm {
 
-/// How the iteration of a step starts.
+/// The initial guess of a step's iteration.
 enum class Guess {
-  Extrapolated,  ///< from the last increments, see IncrementHistory; continuing the velocities in the first step
+  Extrapolated,  ///< from the last increments, see IncrementHistory; in the first step from the velocities
   Repeated,      ///< the last increments again
   Unchanged      ///< the configuration at the beginning
 };
 
-/// Poses of all nodes and released coordinates at both ends of a step, and what follows from them alone. The trial end
-/// is moved by guesses and by Newton's updates of the group's unknowns; slaves follow their joints.
+/// Poses of all nodes and all joint coordinates at both ends of a step, and quantities that follow from them alone.
+/// Guesses and Newton updates move the trial end; slaves follow their joints.
 class StepConfiguration {
  public:
   StepConfiguration(const Model& model, const Scheme& scheme, const DegreesOfFreedom& dof);
-  StepConfiguration(const StepConfiguration&) = delete;  // parts of the step refer to it
+  StepConfiguration(const StepConfiguration&) = delete;  // the parts of the step refer to it
 
-  /// Both ends are the configuration of `state`, which must outlive the step. `step` [s]; 0: statics.
+  /// Sets both ends to the configuration of `state`, which must outlive the step. `step` [s]; 0: statics.
   void begin(const State& state, double step);
-  /// Moves the trial end by the extrapolation of that order of a history, see IncrementHistory.
+  /// Moves the trial end by extrapolated increments of that order, see IncrementHistory.
   void extrapolate(const IncrementHistory& history, int order);
-  /// Prescribed coordinates take their values at `time` [s].
+  /// Sets prescribed coordinates to their values at `time` [s].
   void set_prescribed(double time);
-  /// A Newton update, one entry per unknown: released coordinates and nodes that are no slaves.
+  /// Applies a Newton update, with one entry per unknown, to joint coordinates and to nodes that are not slaves.
   void update(const Eigen::VectorXd& increment);
-  /// To be called when all else stands: following coordinates, slaves, increments.
+  /// Sets mimic coordinates, slaves and increments. To be called after all other changes of the trial end.
   void set_slaves();
-  /// inverse_tangents of all nodes.
+  /// Computes inverse_tangents() of all nodes.
   void set_inverse_tangents();
-  /// The trial end becomes the configuration of a state.
+  /// Sets the trial end to the configuration of a state.
   void set_end(const State& state);
-  /// Null: stops hold as their penetration says. Else it must outlive the steps.
+  /// Prescribes the branches of stops and friction. Null: they follow from the motion. `modes` must outlive the steps.
   void hold_modes(const EventModes* modes) { modes_ = modes; }
   const EventModes* held_modes() const { return modes_; }
-  /// Writes the increments of the step as the newest of the history.
+  /// Writes the increments of the step into the history as its newest ones.
   void remember_increments(IncrementHistory& history) const;
 
   const Model& model() const { return model_; }
   const Scheme& scheme() const { return scheme_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
-  const State& state() const { return *state_; }  ///< at the beginning
+  const State& state() const { return *state_; }  ///< at the beginning of the step
   double step() const { return step_; }           ///< [s]; 0: statics
   const std::vector<NodePose>& begin() const { return begin_; }
   const std::vector<NodePose>& end() const { return end_; }
   const std::vector<Released>& released() const { return released_; }
   Released& released(int joint) { return released_[joint]; }
-  /// Per node: tangent-scaled rotation increments, and the inverse of their tangent.
+  /// Per node: tangent-scaled rotation increments over the step, that is, rotation vectors of the length 2
+  /// tan(angle/2), and the inverses of their tangents.
   const std::vector<Vector3>& increments() const { return increments_; }
   const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
-  /// The longest of the increments, tangent-scaled, and its node.
+  /// The largest tangent-scaled rotation increment, and its node.
   struct LargestIncrement {
     double size = 0;
     int node = 0;
   };
   LargestIncrement largest_increment() const;
-  /// The first hinge's coordinate that turns by more than half a turn, which the rotations of its nodes cannot tell
-  /// from less; -1: none.
+  /// The first hinge coordinate that turns by more than half a turn. The rotations of its nodes are then ambiguous. -1
+  /// if there is none.
   int aliased_coordinate() const;
-  /// Angle by which a coordinate that is no component of a rotation vector turns its joint [rad].
+  /// Angle by which a coordinate, other than components of rotation vectors, turns its joint [rad].
   double turn_of(const Coordinate& coordinate) const;
   StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
-  /// True where a slider has left its line, or goes over more elements than a step may.
+  /// Whether a slider has left its line, or passes more elements than allowed in a step.
   bool is_off_line() const { return off_line_joint_ >= 0; }
-  int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
-  /// True where a motion has driven it there, which no shorter step mends.
+  int off_line_joint() const { return off_line_joint_; }  ///< the first such joint; -1: none
+  /// Whether a prescribed motion is the cause, so that no shorter step can help.
   bool is_driven_off_line() const;
-  /// Notes when sliders that may leave their lines come to their ends.
+  /// Notes when sliders that may leave their lines reach the ends of these.
   void note_events(FirstEvent& first) const;
 
-  /// True where what acts in the balance is its mean over the step: in the Newmark family it is that at the end, of
-  /// which there is none at the start of a simulation.
+  /// Whether forces in the balance count as means over the step. In the Newmark family they are forces at the end of
+  /// the step, and a mean needs those of the step before, too. In the first step, they count as means.
   bool forces_are_means() const { return scheme_.is_incremental() || state_->history.count == 0; }
-  /// By which efforts on coordinates are multiplied in their rows. These are reactions, which schemes that interpolate
-  /// forces in time extrapolate to the end of the step.
+  /// Factor of efforts in the rows of coordinates. Efforts are reactions, which schemes that interpolate forces in time
+  /// extrapolate to the end of the step.
   double effort_weight() const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
-  /// Increment of the released coordinates of a joint, and of one of them.
+  /// Increments over the step: of all coordinates of a joint, and of one coordinate.
   ReleasedVector increment_of(int joint) const;
   double increment_of(const Coordinate& coordinate) const;
-  /// Maps of a joint for residual `g` on its slave.
+  /// Computes the maps of a joint, for the residual `g` on its slave.
   void joint_maps(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent) const;
   void joint_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
   MimicMap mimic_map(int coordinate) const;
-  /// What passive efforts on a coordinate feel of the step.
+  /// The data of the step that passive efforts on a coordinate depend on.
   CoordinateStep coordinate_step(std::size_t coordinate, double increment) const;
-  /// Released rates of a joint at the beginning; where they are kept, or found in this step.
+  /// Rates of a joint's coordinates at the beginning. Valid after keep_begin_rates(), or find_begin_rates() in this
+  /// step.
   const ReleasedVector& begin_rates(int joint) const { return begin_rates_[joint]; }
   void find_begin_rates();
-  /// Of one of them at the end, as the scheme makes it of the increment; where begin_rates() are known.
+  /// Rate of a coordinate at the end, by the scheme's rule from its increment. Requires begin_rates().
   double end_rate(const Coordinate& coordinate) const;
-  /// Finds begin_rates() in every step, as the Newmark family does in any case.
+  /// From now on computes begin_rates() in every step. The Newmark family always does.
   void keep_begin_rates() { keeps_begin_rates_ = !scheme_.is_static; }
 
  private:
@@ -119,12 +121,12 @@ class StepConfiguration {
   Scheme scheme_;
   const DegreesOfFreedom& dof_;
   FreeNodes free_nodes_;
-  Eigen::VectorXd guess_;  // increments, one entry per unknown
+  Eigen::VectorXd guess_;  // guessed increments, one entry per unknown
   const State* state_ = nullptr;
   double step_ = 0;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
-  std::vector<slide::Place> begin_places_, end_places_;  // per joint, of sliders; empty without any
+  std::vector<slide::Place> begin_places_, end_places_;  // per joint, valid for sliders; empty if there are none
   std::vector<Vector3> increments_;
   std::vector<Matrix3> inverse_tangents_;
   int off_line_joint_ = -1;

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the times within a step at which the equations change. (docs/notes/accuracy.md 4)
+/// Computes the times within a step at which the equations change. (docs/notes/accuracy.md 4)
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 
 namespace flexarm {
 
-/// Fraction of a step at which what does not happen in it happens.
+/// Stands for events that do not happen in the step.
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// And at which a coordinate is stopped of which nothing but that is known.
+/// Fraction of a step at which friction is assumed to stop a coordinate, if the time of the stop is unknown.
 constexpr double kUnknownStop = 0.5;
 
-/// The first place on the way from `begin` to `end` at which `border` is crossed; kNever if both are on one side of it.
-/// The rate changes linearly; `start` is the way that would be made at the initial rate.
+/// The fraction of a step at which a quantity first crosses `border` on its way from `begin` to `end`; kNever if both
+/// ends are on one side. The rate is assumed to change linearly; `start` is the initial rate times the step.
 inline double crossing(double begin, double end, double border, double start) {
   if ((begin < border) == (end < border)) return kNever;
   const double bend = end - begin - start, missing = begin - border;  // bend s^2 + start s + missing = 0
@@ -26,11 +26,11 @@ inline double crossing(double begin, double end, double border, double start) {
   return std::isfinite(first) ? first : missing / (begin - end);
 }
 
-/// The first of the events in a step that happen behind a fraction of it, and of stops by friction and kinks of forces
-/// behind another one: the former leave no error of the velocity, the latter a small one.
+/// The first event in a step. Events before the fraction `behind` do not count. Stops by friction and kinks of forces
+/// do not count before `stop_behind`: a stop by friction leaves no error of the velocity, a kink only a small one.
 struct FirstEvent {
   double behind = 0, stop_behind = 0;
-  double fraction = kNever;  ///< kNever: there is none
+  double fraction = kNever;  ///< of the step, at the first event; kNever: there is none
 
   void note(double event) {
     if (event > behind && event < fraction) fraction = event;
@@ -38,7 +38,7 @@ struct FirstEvent {
   void note_stop(double event) {
     if (event > stop_behind) note(event);
   }
-  /// Where a force has a kink, which makes an error as the square of how far the end of a step is from it.
+  /// For a kink of a force. Its error grows with the square of the distance of the event from the end of the step.
   void note_kink(double event) {
     if (event < 1 - stop_behind) note_stop(event);
   }

@@ -1,22 +1,22 @@
 #pragma once
-/// An interface for what follows a run from one solved sub-step to the next.
+/// Interface for objects that follow a run from one solved sub-step to the next.
 
 namespace flexarm {
 
 struct State;
 class StepSystem;
 
-/// Sees what a Stepper does to its state. What it does itself changes nothing there.
+/// Is told what a Stepper does to its state. It must not change the state.
 class StepFollower {
  public:
   virtual ~StepFollower() = default;
-  /// A step of the run begins, and has ended after `duration` [s].
+  /// A step of the run begins, or has ended after `duration` [s].
   virtual void begin_step() = 0;
   virtual void end_step(double duration) = 0;
-  /// What follows until the next call may be taken back: sub-steps of a composed scheme.
+  /// Sub-steps after keep() may be undone by take_back(), if they belong to a composed scheme.
   virtual void keep() = 0;
   virtual void take_back() = 0;
-  /// The equations of a sub-step that begins at `state` are solved, and about to be accepted.
+  /// The equations of a sub-step that begins at `state` are solved; the solution will be accepted.
   virtual void follow(const State& state, const StepSystem& solved) = 0;
 };
 

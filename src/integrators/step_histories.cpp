@@ -5,24 +5,25 @@
 namespace flexarm {
 namespace {
 
-/// Where in a step the scheme asks for forces.
+/// The times of a step at which the scheme needs forces.
 struct Instants {
-  double begin, end, earlier, point;  // the latter two: where it evaluates forces in the last step and in this one
-  double share;                       // of `point` in the mean of both that stands for the step's
+  // Ends of the step; then the times at which forces are evaluated in the last step and in this one.
+  double begin, end, earlier, point;
+  double share;  // weight of `point` in the mean of these two forces that stands for the step's mean
 };
 
-/// Of efforts: rows of coordinates are balances at the end of a step in the Newmark family.
+/// Instants for efforts. In the Newmark family, the rows of coordinates are balances at the end of a step.
 Instants ends_of(const StepConfiguration& configuration) {
   const double begin = configuration.state().time, end = begin + configuration.step();
   return {begin, end, begin, end, 0.5};
 }
-/// Of loads.
+/// Instants for loads.
 Instants instants_of(const StepConfiguration& configuration) {
   const Scheme& scheme = configuration.scheme();
   Instants out = ends_of(configuration);
   if (scheme.hht != HhtForm::Kinematics) return out;
   const double back = scheme.alpha * configuration.step();
-  // Before the start there are no forces: its accelerations are those of the start itself.
+  // There are no forces before the start; the first accelerations belong to the start itself.
   out.earlier = out.begin >= 0 ? std::max(out.begin + back, 0.0) : out.begin + back;
   out.point = out.end + back;
   out.share = scheme.gamma;

@@ -9,9 +9,9 @@
 namespace flexarm {
 
 struct StepMotion {
-  const State& state;  ///< at the beginning
+  const State& state;  ///< at the beginning of the step
   const std::vector<NodePose>&begin, &end;
-  const std::vector<Vector3>& increments;  ///< tangent-scaled
+  const std::vector<Vector3>& increments;  ///< tangent-scaled rotations
   double step;                             ///< [s]
 };
 

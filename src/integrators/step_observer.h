@@ -1,15 +1,16 @@
 #pragma once
-/// An interface for observers of the phases of a step.
+/// Interface for observers of the phases of a step, such as profilers.
 
 namespace flexarm {
 
-/// Factorise: of the tangent that was evaluated last, with the solution that follows. Solve: with kept factors.
+/// Factorise: factorises the last tangent and solves with its factors. Solve: solves with factors of an earlier
+/// tangent.
 enum class StepPhase { Begin, Residual, Tangent, Factorise, Solve, Update, Accept, Control };
 
 class StepObserver {
  public:
   virtual ~StepObserver() = default;
-  /// A phase begins; the one before has ended.
+  /// A phase begins, and the phase before it has ended.
   virtual void enter(StepPhase phase) = 0;
 };
 

@@ -7,12 +7,12 @@
 namespace flexarm {
 
 PlaneSearch find_step_plane(const Model& model, const Scheme& scheme) {
-  if (!scheme.may_be_planar) return {std::nullopt, "three dimensions are asked for"};
+  if (!scheme.may_be_planar) return {std::nullopt, "three dimensions are requested"};
   if (scheme.is_static || scheme.stress != StressRule::Conjugate)
-    return {std::nullopt, fmt::format("scheme '{}' is three-dimensional", scheme.name)};
+    return {std::nullopt, fmt::format("scheme '{}' computes in three dimensions only", scheme.name)};
   PlaneSearch search = find_plane(model);
   if (search.plane && !PlanarTangent::suits(model, DegreesOfFreedom(model)))
-    return {std::nullopt, "beams whose far ends other joints hold are three-dimensional"};
+    return {std::nullopt, "beams whose far ends are held by joints are computed in three dimensions only"};
   return search;
 }
 

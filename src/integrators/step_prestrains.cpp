@@ -55,7 +55,7 @@ Vector6 StepPrestrains::made_up(std::size_t i, double begin, double step) const 
   const int index = static_cast<int>(i) - 1;
   const Vector6 mean = mean_prestrain(model, index, begin, begin + step);
   if (reach_ == 1) return mean - 0.5 * (prestrain_at(model, index, begin) + prestrain_at(model, index, begin + step));
-  // Where forces of the last step and of this one belong to; there are none before the start.
+  // The instants at which the last step and this one evaluate forces. There are no forces before the start.
   const double earlier = begin - (1 - reach_) * step, gamma = configuration_.scheme().gamma;
   return mean - (1 - gamma) * prestrain_at(model, index, begin >= 0 ? std::max(earlier, 0.0) : earlier) -
          gamma * prestrain_at(model, index, begin + reach_ * step);
@@ -65,7 +65,7 @@ void StepPrestrains::find_last_made_up() {
   const State& state = configuration_.state();
   const IncrementHistory& history = state.history;
   const double step = history.count > 0 ? history.steps[0] : 0;
-  if (state.time == last_end_ && step == last_step_) return;  // tried once more
+  if (state.time == last_end_ && step == last_step_) return;  // the same step is tried again
   const bool has_gone_on = state.time == made_up_end_ && step == made_up_step_;
   last_end_ = state.time;
   last_step_ = step;

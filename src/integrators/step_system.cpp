@@ -15,7 +15,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
                          ? std::make_unique<HhtInterpolation>(configuration_, beams_->total_rotations())
                          : nullptr),
       forces_(configuration_, histories_, interpolation_.get()),
-      force_elements_(configuration_),
+      force_elements_(configuration_, histories_),
       bodies_(configuration_),
       drag_(configuration_),
       loops_(configuration_),

@@ -1,17 +1,17 @@
 #pragma once
-/// The equations of one step, or of an equilibrium, as a function of the trial configuration at its end.
+/// The equations of one step, or of an equilibrium, as functions of the trial configuration at its end.
 ///
-/// A step is made of parts. Each owns what it needs from evaluation to evaluation and speaks some of the same verbs:
+/// A step consists of parts. Each part owns its data and implements some of these functions:
 ///
-///   begin()     a step starts from a state; the configuration stands at its beginning
-///   evaluate()  adds to the balance: the residual and, where asked for, the tangent
-///   update()    Newton's method has moved the unknowns
-///   revise()    sets by which the equations are chosen are chosen anew
-///   accept()    writes what the step has come to as the new state
+///   begin()     starts a step from a state; the trial configuration is the one at the beginning
+///   evaluate()  adds its contributions to the balance: the residual and, if required, the tangent
+///   update()    is called when Newton's method has moved the unknowns
+///   revise()    chooses the active sets of the equations again, such as the coordinates that stick
+///   accept()    writes its result of the step into the new state
 ///
-/// and all refer to one StepConfiguration, both ends of the step. To add a part: its own files, a member in the list
-/// below, and its verbs in step.cpp. Parts do not know schemes by name, only the rules of
-/// a scheme's row; equilibrium is a rule as well (`statics_of`).
+/// All parts refer to one StepConfiguration, which has both ends of the step. A new part needs its own files, a member
+/// in the list below, and its calls in step.cpp. Parts do not know schemes by name, only the rules of a scheme's table
+/// row. Equilibrium is one of these rules (`statics_of`).
 
 #include <memory>
 
@@ -35,57 +35,59 @@
 
 namespace flexarm {
 
-/// Whether steps of a mechanism that moves in a plane are taken there. What they come to is the same.
+/// Whether steps of a mechanism that moves in a plane are computed in that plane. The results are the same.
 enum class Space { ThreeDimensional, PlaneWhereFound };
 
-/// Nothing allocates after construction, but KLU when a slider enters another element of its line.
+/// Allocates no memory after construction, except in KLU when a slider enters another element of its line.
 class StepSystem {
  public:
   /// The model must outlive the system.
   StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend = BackendChoice::Fastest,
              Space space = Space::ThreeDimensional);
 
-  /// Adds to an initial state what the scheme keeps there.
+  /// Adds the scheme's own data to an initial state.
   void initialise(State& state);
-  /// Starts a step of length `step` [s] from `state`, which must outlive it. Prescribed coordinates take their end
-  /// values.
+  /// Starts a step of length `step` [s] from `state`, which must outlive the step. Sets prescribed coordinates to their
+  /// values at the end.
   void begin(const State& state, double step, Guess guess);
-  /// Starts the step that `other`, of a like model and the same scheme, has solved, from another state, which must
-  /// outlive it: by the newest increments and multipliers of `guess`, and with the same sets, see revise().
+  /// Starts the step that `other` has solved, from another state, which must outlive the step. The model of `other` is
+  /// similar, its scheme the same. Uses the newest increments and multipliers of `guess`, and the active sets of
+  /// `other`, see revise().
   void begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess);
-  /// From the next step on branches of stops and of dry friction are those; null: as each step finds them. Else it must
+  /// Prescribes the branches of stops and dry friction from the next step on. Null: each step finds them. `modes` must
   /// outlive the steps.
   void hold_modes(const EventModes* modes) { configuration_.hold_modes(modes); }
   const DryFrictionStep& friction() const { return friction_; }
-  /// As if one step of that length had led from one state to another one, whose newest multipliers it keeps.
+  /// Sets the history of `end` as if one step of that length had led there from `begin`. Keeps its newest multipliers.
   void remember_step(const State& begin, double step, State& end);
-  /// Writes the increments of the step, and the multipliers, as the newest of the history.
+  /// Writes the increments of the step, and the multipliers, into the history as its newest entries.
   void remember_increments(IncrementHistory& history) const;
-  /// Starts the search for an equilibrium, of a scheme made by statics_of(), from `state`: gravity and loads scaled by
-  /// `load_factor`, histories and motions at time 0. `drag`: see Drag::strength.
+  /// Starts the search for an equilibrium from `state`. The scheme must be made by statics_of(). Gravity and loads are
+  /// scaled by `load_factor`; functions of time and motions have their values at time 0. `drag`: see Drag::strength.
   void begin_equilibrium(const State& state, double load_factor, double drag = 0);
 
   /// See Actuators::hold_rotors().
   void hold_rotors() { actuators_.hold_rotors(); }
 
-  /// Assembles residual (and tangent) of the trial configuration. False if something is not finite, or a slider is off
-  /// its line.
+  /// Evaluates the residual, and the tangent if required, in the trial configuration. Returns false if a value is not
+  /// finite, or if a slider is off its line.
   bool evaluate(bool with_tangent);
-  /// Before the update that the factors of the tangent evaluated last have given, if another tangent will follow:
-  /// what the geometric part of that one sees. `fraction` of the solution that will be taken.
+  /// Updates the strains that the geometric part of the next tangent uses. To be called after a solution with new
+  /// factors and before its update. `fraction`: share of the solution that the update applies.
   void carry_strains(double fraction);
-  /// Applies a Newton update (one entry per unknown) on the group; slaves follow their joints.
+  /// Applies a Newton update, with one entry per unknown, to the trial configuration. Slaves follow their joints.
   void update(const Eigen::VectorXd& increment);
-  /// After an evaluation at an updated configuration: decides anew what belongs to the sets by which the equations are
-  /// chosen, as the coordinates that stick. Null: the equations are as before; else what has changed, in words.
+  /// Chooses the active sets of the equations again, such as the coordinates that stick. To be called after an
+  /// evaluation at an updated configuration. Null: the equations are unchanged. Otherwise the change in words.
   const char* revise() { return friction_.revise() ? "friction sticks or slips" : nullptr; }
-  /// False if the tangent evaluated last was of other sets, or other dimensions.
+  /// Whether the tangent that was evaluated last belongs to the present active sets and dimension (plane or space).
   bool tangent_holds() const { return friction_.tangent_holds() && has_planar_tangent_ == is_planar(); }
-  /// Writes the trial configuration, evaluated last without an update since, as the new state; an equilibrium at rest.
+  /// Writes the trial configuration as the new state; an equilibrium at rest. It must be evaluated after its last
+  /// update.
   void accept(State& state);
-  /// The state was changed by somebody else: quantities kept from the last step do not hold.
+  /// Discards data kept from the last step. To be called after the state was changed by something other than a step.
   void invalidate();
-  /// Of strains that depend on the way to a configuration: see RotationReference.
+  /// Makes strains independent of the path to a configuration: see RotationReference::forget_path().
   void forget_path(State& state) { beams_->forget_path(state); }
   /// Whether the step begun last is taken in a plane.
   bool is_planar() const { return planar_ && planar_->is_on; }
@@ -98,27 +100,28 @@ class StepSystem {
   const Eigen::VectorXd& residual() const { return residual_; }
   TangentBackend& tangent() { return is_planar() ? planar_->tangent : *tangent_; }
   const TangentBackend& tangent() const { return is_planar() ? planar_->tangent : *tangent_; }
-  /// See LoopMultipliers.
+  /// See LoopMultipliers::largest_opening().
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
-  /// See StopContacts and ForceElement::needs_halves().
+  /// Whether the step is too long for a hit, see StopContacts and ForceElement::needs_halves().
   bool hits_too_fast(double refinement) {
     return contacts_.hits_too_fast(refinement) || force_elements_.need_halves(refinement);
   }
-  /// See SmoothReversals; of joints, rotors and losses of gears.
+  /// Whether the step is too long for a reversal of smooth friction, see SmoothReversals; also of rotors and lossy
+  /// gears.
   bool turn_too_fast(double refinement) {
     return reversals_.turn_too_fast(refinement) || actuators_.turn_too_fast(refinement);
   }
-  /// Notes when forces jump in the step, with which the order of the scheme is lost: friction stops a coordinate or
-  /// turns its direction, a stop is touched, a gear comes out of its play or into it, a slider comes to the end of its
-  /// line. And when they have kinks: a stop pushes no more or begins to, a motor comes to its limit or leaves it.
+  /// Notes when forces jump in the step, which reduces the order of the scheme: friction stops a coordinate or changes
+  /// its direction, a stop is touched, a gear enters or leaves its play, a slider reaches the end of its line. Also
+  /// notes when forces have kinks: a stop begins or ceases to push, a motor reaches or leaves its limit.
   void note_events(FirstEvent& first);
-  /// True where forces have a kink within the step of which no one knows when: friction lets a coordinate go.
+  /// Whether forces have a kink at an unknown time within the step: a resting coordinate begins to slide.
   bool has_kink() const { return friction_.breaks_away(); }
   bool may_hit() { return contacts_.may_hit() || force_elements_.may_hit(); }
-  /// True where bodies touch each other, or may do so in the step begun last.
+  /// Whether bodies touch each other, or may do so in the step begun last.
   bool touches() const { return force_elements_.may_hit(); }
-  /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
-  /// made by statics_of().
+  /// Internal minus external forces on all nodes in the configuration of `state`, before joints fold them. The scheme
+  /// must be made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);
 
  private:
@@ -151,10 +154,10 @@ class StepSystem {
   HeldEfforts held_efforts_;
   SmoothReversals reversals_;
   StopContacts contacts_;
-  // ---- the balance of what they add
+  // ---- the balance to which they add
   ReducedResidual rows_, carried_rows_;
   std::unique_ptr<TangentBackend> tangent_;
-  std::unique_ptr<PlanarStep> planar_;  // null unless there is a plane
+  std::unique_ptr<PlanarStep> planar_;  // null unless the mechanism moves in a plane
   bool has_planar_tangent_ = false;
   double dissipated_ = 0;  // over the step [J]
   Eigen::VectorXd residual_;

@@ -15,17 +15,17 @@ namespace {
 
 /// A node must not turn by more than pi/2 in a step: |2 tan(angle/2)| = 2.
 constexpr double kLargestStepRotation = 2.0;
-/// Violation of what a loop's constraints imply: far above what Newton and the scene's rounded numbers leave.
+/// Limit for the violation of a loop's implied constraints: far above the errors of Newton and of rounded input.
 constexpr double kOpenLoop = 1e-4;
-/// Suzuki's composition of order four: parts of a step, the middle one runs backwards.
+/// Suzuki's composition of order four: lengths of the sub-steps relative to the step; the middle one is backwards.
 const double kOuterPart = 1 / (4 - std::cbrt(4.0));
 const double kComposition[kCompositionSteps] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
-/// A step that has been halved so often, and doubled again as often, does not come forward: it is given up.
+/// A step with this many halvings, each undone by a doubling, makes no progress and is aborted.
 constexpr int kMostHalvings = 500;
-/// Converged sub-steps after which the step is doubled again; where events are looked for, it is short because it has
-/// to be, and doubled in vain too often.
+/// The sub-step is doubled after this number of converged sub-steps. With a search for events, sub-steps are short for
+/// a reason, and doubling them early would fail too often.
 constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
-/// Halvings of a step in which forces have a kink: it makes an error as the square of the step's length.
+/// Number of halvings of a step in which forces have a kink, whose error is proportional to the square of the step.
 constexpr int kKinkHalvings = 3;
 
 }  // namespace
@@ -123,7 +123,7 @@ StepResult Stepper::advance(State& state, const Deadline& deadline) {
   if (!substitute_) return advance_by_scheme(state, deadline);
   substitute_->keep(state);
   StepResult result = advance_by_scheme(state, deadline);
-  // What was cut for lack of time has come as far as it could; there is none left to do it again.
+  // A step that ran out of time cannot be repeated by another scheme, since no time is left.
   const bool may_be_done_again =
       !result.converged && result.reason != Reason::EventWithin && result.reason != Reason::OutOfTime;
   if (may_be_done_again && substitute_->advance(state, deadline, result)) invalidate();
@@ -153,13 +153,13 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
       if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false, result);
       ++state.halving_level;
       ++result.halvings;
-      if (is_late) return give_up(true, result);  // who goes on does so with a shorter step
+      if (is_late) return give_up(true, result);  // after the halving, so that the next call starts with a shorter step
       continue;
     }
     done += whole >> level;
     if (is_late && done < whole) return give_up(is_late, result);
     state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
-    // Doubling must keep sub-steps on the grid of the longer ones.
+    // A doubled sub-step must begin at a multiple of its own length.
     if (state.good_steps >= good_steps && level > 0 && done % (whole >> (level - 1)) == 0) {
       --state.halving_level;
       state.good_steps = 0;
@@ -190,14 +190,14 @@ StepResult Stepper::initialise(State& state) {
 }
 
 StepResult Stepper::initialise_accelerations(State& state) {
-  // A centred difference over a step h has a truncation error of order h and a round-off of order epsilon / h^2.
+  // A difference quotient over a step h has a truncation error of order h and a round-off error of order epsilon / h^2.
   const double h = 1e-2 * settings_.step;
   StepSettings settings = settings_;
   settings.step = h;
   settings.events = {};
   Scheme scheme = *find_scheme("m1");
   scheme.contact_time = scheme_.contact_time;
-  scheme.heeds_slide_schemes = false;  // they were chosen for another scheme
+  scheme.heeds_slide_schemes = false;  // the slides' schemes were chosen for another scheme
   Stepper momentum(model_, scheme, settings);
   State moved = state;
   StepResult result = momentum.advance(moved);
@@ -211,7 +211,8 @@ StepResult Stepper::initialise_accelerations(State& state) {
         (moved.mass_points[i].angular_velocity - state.mass_points[i].angular_velocity) / h;
   for (std::size_t i = 0; i < state.actuators.size(); ++i) {
     state.actuators[i].acceleration = (moved.actuators[i].rate - state.actuators[i].rate) / h;
-    // The first step's work has the motor's effort at both ends, that at the start being what made these accelerations.
+    // The work of the first step uses the motor's effort at both ends. The effort at the start is the one that caused
+    // these accelerations.
     const int coordinate = model_.actuators[i].coordinate;
     if (model_.coordinates[coordinate].motion < 0) state.efforts[coordinate] = moved.efforts[coordinate];
   }

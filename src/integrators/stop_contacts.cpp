@@ -18,7 +18,7 @@ const Coordinate& StopContacts::coordinate(const Stopped& stopped) const {
   return configuration_.model().coordinates[stopped.index];
 }
 
-/// Followers do not stand before StepConfiguration::set_slaves().
+/// Computes the positions of mimic coordinates, which are not up to date before StepConfiguration::set_slaves().
 double StopContacts::position(const Coordinate& coordinate) const {
   if (coordinate.mimicked >= 0)
     return coordinate.mimic.value(position(configuration_.model().coordinates[coordinate.mimicked]));
@@ -30,7 +30,7 @@ double StopContacts::begin_position(const Stopped& stopped) const {
   return position(limited) - configuration_.increment_of(limited);
 }
 
-/// Where they have been found.
+/// Requires StepConfiguration::find_begin_rates().
 double StopContacts::begin_rate(const Stopped& stopped) const {
   const Coordinate& limited = coordinate(stopped);
   return configuration_.begin_rates(limited.joint)[limited.component];

@@ -1,5 +1,5 @@
 #pragma once
-/// Contacts with stops between Newton's iterations and after them.
+/// Limits Newton updates at joint stops, and finds hits on stops in a solved step.
 
 #include <vector>
 
@@ -8,26 +8,26 @@
 
 namespace flexarm {
 
-/// Stops push without bound where they give way no further, which no update may pass: a coordinate whose stop feels it,
-/// itself or one that it leads, goes part of the way.
+/// The force of a stop grows without bound towards a maximal penetration, which no update may pass. So an update of a
+/// coordinate is shortened if its own stop, or that of a coordinate that follows it, would pass this limit.
 class StopContacts {
  public:
   explicit StopContacts(StepConfiguration& configuration);
 
   void before_update();
   void after_update();
-  /// True where the restitution of a hit would be lost in so long a step; or, with a refinement above 1, in steps that
-  /// much longer.
+  /// Whether the step is so long that the restitution of a hit would be lost. With a refinement above 1: whether it
+  /// would be lost in a step that is longer by this factor.
   bool hits_too_fast(double refinement);
-  /// Notes when coordinates touch their stops, and when these push no more or begin to.
+  /// Notes when coordinates touch their stops, and when stops begin or cease to push.
   void note_events(FirstEvent& first);
-  /// True where the step is long for a hit that it is in or may come to, whatever its trial end.
+  /// Whether the step is long for a hit that is going on or may begin. Does not depend on the trial end.
   bool may_hit();
 
  private:
   struct Stopped {
     std::size_t index;         // of the coordinate
-    const Coordinate* leader;  // whose unknown it follows; else itself
+    const Coordinate* leader;  // the coordinate that this one follows, or itself
     StopPenalty penalty;
     double position, leading_position;  // before the update
   };

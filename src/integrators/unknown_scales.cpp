@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-/// Largest absolute value of what it was given; NaN as soon as that was not a number.
+/// Collects the largest absolute value of numbers; NaN if one of them is NaN.
 class Largest {
  public:
   [[gnu::always_inline]] void take(const Pack& values) {
@@ -35,7 +35,7 @@ class Largest {
   Pack::Mask is_broken_{};
 };
 
-/// take(next), four entries of `size` at a time: next(array) gives those of an array, zero beyond its end.
+/// Calls take(next) for each four of `size` entries; next(array) loads these entries of an array, zero beyond its end.
 template <class Take>
 [[gnu::always_inline]] inline void by_fours(std::size_t size, const Take& take) {
   const std::size_t whole = size / Pack::kLanes * Pack::kLanes;
@@ -100,7 +100,7 @@ double UnknownScales::largest_moment(const Eigen::VectorXd& residual) const {
   double largest = 0;
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     const double size = scales_[i] > 0 ? std::abs(residual[i]) / scales_[i] : 0;
-    if (size > largest || std::isnan(size)) largest = size;  // which no number is larger than
+    if (size > largest || std::isnan(size)) largest = size;  // no number compares larger than NaN, so NaN stays
   }
   return largest;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Scales of the increments of the unknowns.
+/// Scales of the unknowns, for norms of Newton updates and residuals.
 
 #include <vector>
 
@@ -9,32 +9,33 @@
 
 namespace flexarm {
 
-/// Scales of all unknowns: displacements count over the model's length scale, rotations in rad, and a multiplier of a
-/// loop as the way by which its force moves the mechanism in a step. Where motions and loops leave nothing free, the
-/// multipliers are all that Newton's method has to find.
+/// Scales of all unknowns. Displacements are divided by the model's length scale; rotations are in rad. The multiplier
+/// of a loop counts as the displacement that its force causes in a step. Multipliers matter if motions and loops leave
+/// no other unknowns.
 class UnknownScales {
  public:
   UnknownScales(const Model& model, const DegreesOfFreedom& dof);
 
-  /// Largest entry of an increment, [-] or rad; infinite where one is not finite. `step` [s]; 0: statics, where
-  /// multipliers do not count.
+  /// Largest scaled entry of an increment, [-] or rad; infinite if an entry is not finite. `step` [s]; 0: statics,
+  /// where multipliers do not count.
   double norm(const Eigen::VectorXd& increment, double step) const;
-  /// Largest entry of a residual: forces times the model's length scale, and moments [N m].
+  /// Largest entry of a residual as a moment [N m]: forces are multiplied by the model's length scale.
   double largest_moment(const Eigen::VectorXd& residual) const;
-  /// Largest rotation among the entries [rad].
+  /// Largest rotation among the entries of an increment [rad].
   double largest_rotation(const Eigen::VectorXd& increment) const;
-  /// The next step is to be foreseen as the newest one would have been foreseen best.
+  /// Chooses the order of extrapolation for the next step: the order that would have predicted the newest increment
+  /// best.
   void choose_order(IncrementHistory& history) const;
 
  private:
   struct Multiplier {
     int equation;
-    double arm;  // of its force [m], or 1
+    double arm;  // lever arm of a multiplier that is a moment [m]; 1 for a force
   };
   double length_ = 1, mass_ = 0;
-  // Per equation; neither has multipliers.
-  Eigen::ArrayXd scales_;     // [1/m], 1 of rotations
-  Eigen::ArrayXd rotations_;  // 1 of those, else 0
+  // Per equation; zero for multipliers.
+  Eigen::ArrayXd scales_;     // [1/m]; 1 for rotations
+  Eigen::ArrayXd rotations_;  // 1 for rotations, else 0
   std::vector<Multiplier> multipliers_;
 };
 

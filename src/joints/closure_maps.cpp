@@ -9,11 +9,11 @@ namespace {
 
 using so3::hat;
 
-/// The vectors of which a constraint is made, world axes, at one instant or in the mean of two.
+/// The vectors in a constraint, in world axes, at one instant or averaged over two.
 struct Vectors {
-  Vector3 normal;                 // on the parent
+  Vector3 normal;                 // fixed to the parent
   Vector3 parent_arm, other;      // other: the child's arm (Gap) or direction (Direction)
-  Vector3 gap = Vector3::Zero();  // from the parent's to the child's point
+  Vector3 gap = Vector3::Zero();  // from the parent's point to the child's point
 };
 
 Vectors vectors(const LoopClosure& closure, const ClosureConstraint& constraint, const ClosurePoses& poses) {
@@ -68,7 +68,7 @@ void closure_maps(const LoopClosure& closure, const ClosureConstraint& constrain
   for (Matrix6* block : {&maps.parent_parent, &maps.parent_child, &maps.child_parent, &maps.child_child})
     block->setZero();
 
-  // Vectors at the end turn with their nodes: d(normal) = -normal^ spin.
+  // Vectors at the end of the step rotate with their nodes: d(normal) = -normal^ spin.
   const Matrix3 d_normal = -w * hat(at_end.normal), d_other = -w * hat(at_end.other);
   const Matrix3 moment_normal = hat(v.other) * d_normal, moment_other = -hat(v.normal) * d_other;
   maps.child_parent.bottomRightCorner<3, 3>() = moment_normal;
@@ -80,7 +80,7 @@ void closure_maps(const LoopClosure& closure, const ClosureConstraint& constrain
   }
   maps.child_parent.topRightCorner<3, 3>() = d_normal;
   maps.parent_parent.topRightCorner<3, 3>() = -d_normal;
-  // normal x (parent_arm + gap), where the gap takes the parent's arm back: the child's point less the parent's node.
+  // In normal x (parent_arm + gap), the sum is the child's point minus the parent's node: the parent's arm cancels.
   const Matrix3 n = hat(v.normal);
   maps.parent_parent.bottomLeftCorner<3, 3>() = -w * n;
   maps.parent_parent.bottomRightCorner<3, 3>() = -hat(Vector3(v.parent_arm + v.gap)) * d_normal;

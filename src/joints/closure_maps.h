@@ -1,5 +1,5 @@
 #pragma once
-/// Rows of the constraints that close a loop, and their derivatives. (joints.md 3)
+/// Values and gradients of the constraints that close a loop, and the derivatives of the gradients. (joints.md 3)
 
 #include "model/joint.h"
 #include "model/loop_closure.h"
@@ -11,27 +11,28 @@ struct ClosurePoses {
   NodePose parent, child;
 };
 
-/// A constraint's rows: derivative of its value with respect to {displacement, spin} of the nodes.
+/// Gradient of a constraint: the derivative of its value with respect to {displacement, spin} of the nodes.
 struct ClosureRows {
   Vector6 parent, child;
 };
 
-/// `left`, times the multiplier, is what the closure adds to the nodes' residuals; its derivative with respect to
-/// {displacement, spin} at the end are the blocks. `right` is the derivative of `value`.
+/// A constraint over a step. `left` times the multiplier is added to the nodes' residuals. The blocks are the
+/// derivatives of `left` with respect to {displacement, spin} at the end. `right` is the gradient of `value`.
 struct ClosureMaps {
-  double value;  ///< of the constraint at the end; 0 where it holds
+  double value;  ///< of the constraint at the end; 0 if it holds
   ClosureRows left, right;
   Matrix6 parent_parent, parent_child, child_parent, child_child;
 };
 
-/// Value of a constraint, 0 where it holds.
+/// Returns the value of a constraint; 0 if it holds.
 double closure_value(const LoopClosure& closure, const ClosureConstraint& constraint, const ClosurePoses& poses);
-/// Its derivative.
+/// Returns the gradient of the value.
 ClosureRows closure_rows(const LoopClosure& closure, const ClosureConstraint& constraint, const ClosurePoses& poses);
 
-/// `end_weight`: of the end in the vectors of the left rows. With 1/2 they are a discrete gradient: over a step their
-/// product with the nodes' {Delta r, tangent-scaled rotation increment} is the change of the value, exactly, so that
-/// multipliers do no work; and forces at mean positions add up to no momentum. 1: the gradient at the end.
+/// Computes the maps of a constraint over a step. `end_weight`: weight of the end of the step in the vectors of the
+/// left rows. With 1/2 the left rows are a discrete gradient: their product with the nodes' {Delta r, tangent-scaled
+/// rotation increment} is exactly the change of the value, so multipliers do no work. Their forces then also conserve
+/// momenta, since they act at the mean positions. With 1 the left rows are the gradient at the end.
 void closure_maps(const LoopClosure& closure, const ClosureConstraint& constraint, const ClosurePoses& begin,
                   const ClosurePoses& end, double end_weight, ClosureMaps& maps);
 

@@ -15,7 +15,7 @@ void StickSlip::begin(double rest_increment, double rate) {
 bool StickSlip::revise(double increment, double effort, double capacity, double slack) {
   assert(!(capacity < 0) && slack >= 0);
   const Branch before = branch_;
-  const bool plain = low_ == high_;  // both treads between are one point
+  const bool plain = low_ == high_;  // both vertical parts of the staircase coincide
   const double excess = slack * capacity, least = plain ? -capacity : 0, most = plain ? capacity : 0;
   switch (before) {
     case SlipBack:

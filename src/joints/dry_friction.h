@@ -1,45 +1,47 @@
 #pragma once
-/// Dry friction: Coulomb's set-valued law over a step, and the force that presses on a joint. (beyond.md 3)
+/// Dry friction: Coulomb's set-valued law over a step, and the normal force in a joint. (beyond.md 3)
 
 #include "flexarm/math/pose.h"
 
 namespace flexarm {
 
-/// Coulomb's law for the increment x of one coordinate over a step: the effort against it is a staircase in x, a
-/// maximal monotone graph, so that there is one solution whatever else acts, and x times effort is never negative.
+/// Coulomb's law for the increment x of one coordinate over a step. The friction effort against x is a staircase
+/// function of x. This is a maximal monotone graph: there is exactly one solution whatever other efforts act, and x
+/// times the effort is never negative.
 ///
-/// With the capacity F and the increment x_r with which the coordinate comes to rest at the end of the step, x_r > 0:
+/// Let F be the largest friction effort (capacity), and x_r the increment with which the coordinate is at rest at the
+/// end of the step. For x_r > 0, the effort is
 ///   -F  for x < 0,    [-F, 0]  at x = 0,    0  for 0 < x < x_r,    [0, F]  at x = x_r,    F  for x > x_r;
-/// mirrored for x_r < 0, and the plain law F Sign(x) where the coordinate rests at the beginning, x_r = 0. At x = 0 it
-/// sticks. At x = x_r it stops, with an effort that takes exactly the kinetic energy left. The law F Sign(x) alone
-/// would let conserving schemes come to a halt with x = 0, hence with all that energy, and velocities that ring for
-/// ever.
+/// for x_r < 0 it is mirrored. If the coordinate is at rest at the beginning, x_r = 0 and the law is F Sign(x). The
+/// coordinate sticks if x = 0. If x = x_r, it stops, with an effort that takes exactly the remaining kinetic energy.
+/// With the law F Sign(x) alone, a conserving scheme would stop with x = 0 and keep all this energy, and its velocities
+/// would alternate for ever.
 ///
-/// The branch is revised between Newton's iterations; a branch is either an effort or an increment that is known.
+/// The solver revises the branch between iterations. On each branch, either the effort or the increment is known.
 class StickSlip {
  public:
-  /// Along the staircase.
+  /// The branches of the staircase, in the order of increasing x.
   enum Branch { SlipBack, HeldLow, Free, HeldHigh, SlipForth };
 
-  /// `rest_increment`: x_r; the coordinate is expected to go on as its `rate` at the beginning says.
+  /// Starts a step. `rest_increment`: x_r. `rate`: at the beginning; the first branch assumes that its sign stays.
   void begin(double rest_increment, double rate);
-  /// Corrects the branch for the increment and the effort against it that it has led to; true if it was another one.
-  /// `slack`: relative to the capacity, by which an effort may exceed it.
+  /// Corrects the branch, given the increment and the effort against it that the present branch has led to. Returns
+  /// whether the branch has changed. `slack`: by how much an effort may exceed the capacity, relative to the capacity.
   bool revise(double increment, double effort, double capacity, double slack);
 
   Branch branch() const { return branch_; }
   void take_branch(Branch branch) { branch_ = branch; }
-  /// It comes to rest, however much that takes.
+  /// Makes the coordinate come to rest at the end of the step, whatever effort that needs.
   void take_rest() {
     low_ = high_ = rest_increment_;
     branch_ = HeldLow;
   }
-  /// Of the effort against the increment where the branch gives it, per capacity.
+  /// Returns the friction effort against the increment, divided by the capacity, on a branch that determines it.
   int direction() const { return branch_ == SlipForth ? 1 : branch_ == SlipBack ? -1 : 0; }
-  /// True where the branch gives the increment instead.
+  /// Whether the branch determines the increment, and not the effort.
   bool is_held() const { return branch_ == HeldLow || branch_ == HeldHigh; }
   double held_increment() const { return branch_ == HeldLow ? low_ : high_; }
-  /// Held, and at rest at the end of the step.
+  /// Whether the branch determines the increment such that the coordinate is at rest at the end of the step.
   bool is_stopped() const { return is_held() && held_increment() == rest_increment_; }
 
  private:
@@ -47,22 +49,23 @@ class StickSlip {
   Branch branch_ = HeldLow;
 };
 
-/// Along what a coordinate moves.
+/// Which part of a joint's force is the normal force of a coordinate's friction.
 enum class Contact {
-  Travel,  ///< forces across it press
-  Turn,    ///< forces across the axis press
-  Both     ///< coupled, as in a thread or in teeth: the whole force presses
+  Travel,  ///< translation: the part normal to its direction
+  Turn,    ///< rotation: the part normal to its axis
+  Both     ///< coupled motion, as in a thread or in teeth: the whole force
 };
 
-/// The force that presses in a joint, and what its variation needs.
+/// The normal force in a joint, and terms of its variation.
 struct NormalForce {
   double magnitude = 0;                 ///< [N]
-  Vector3 direction = Vector3::Zero();  ///< its derivative with respect to the joint's force; zero without force
-  /// d(magnitude) at constant force = along * d(column . arm), column being the coordinate's.
+  Vector3 direction = Vector3::Zero();  ///< d(magnitude)/d(joint's force), a unit vector; zero without force
+  /// At constant force, d(magnitude) = along * d(column . arm), with the coordinate's column of the joint's map.
   double along = 0;
   Vector6 arm = Vector6::Zero();
 };
-/// `column`: of the coordinate in the joint's map, {translation, rotation}; `force`: on the slave.
+/// Returns the normal force. `column`: the coordinate's column {translation, rotation} of the joint's map; `force`: the
+/// joint's force on the slave [N].
 NormalForce normal_force(Contact contact, const Vector6& column, const Vector3& force);
 
 }  // namespace flexarm

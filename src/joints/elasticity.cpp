@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// What of a twist is beyond the play, and its derivative.
+/// The part of a twist beyond the play, and its derivative with respect to the twist.
 struct Deflection {
   double value, slope;
 };
@@ -31,7 +31,7 @@ PassiveEffort elastic_effort(const Elasticity& elasticity, const CoordinateStep&
             viscous * twist.increment};
   }
   const Deflection begin = deflection(elasticity, twist.begin);
-  // Without a kink on the way the quotient is the slope; elsewhere nothing cancels.
+  // If no kink is passed, the quotient of the increments is the slope. Else the quotient has no cancellation.
   const bool is_straight = begin.slope == end.slope && begin.value * end.value >= 0;
   const double change = begin.slope == 1 && is_straight ? twist.increment : end.value - begin.value;
   const double quotient = is_straight ? end.slope : change / twist.increment;

@@ -1,21 +1,22 @@
 #pragma once
-/// Springs with play over a step. (docs/notes/drives.md)
+/// Efforts of springs and dampers with play over a step. (docs/notes/drives.md)
 ///
-/// Of the twist x an elastic element feels y, what is beyond the play: V = k y^2 / 2. Over a step
+/// Let x be the twist, y its part beyond the play, V = k y^2 / 2 the energy. Over a step of length h
 ///   effort = -(k (y_0 + y_1)/2 dy/dx + d dy/h),
-/// where dy/dx is the quotient of the increments: its work is exactly what leaves V, less what the damper takes. It
-/// falls with the twist at the end, whatever else happens.
+/// where dy is the increment of y, and dy/dx the quotient of the increments. Its work is exactly the decrease of V
+/// minus the energy that the damper dissipates. The effort always decreases with the twist at the end.
 
 #include "joints/coordinate_step.h"
 #include "model/actuator.h"
 
 namespace flexarm {
 
-/// On the twist.
+/// Returns the effort on the twist. `twist`: its change over the step.
 PassiveEffort elastic_effort(const Elasticity& elasticity, const CoordinateStep& twist);
-/// [J]
+/// Returns the elastic energy [J].
 double elastic_energy(const Elasticity& elasticity, double twist);
-/// Slope of the effort against the twist's rate, at rest [N m s/rad or N s/m].
+/// Returns the damping coefficient at rest at this twist: minus the derivative of the effort with respect to the
+/// twist's rate [N m s/rad or N s/m].
 double elastic_damping(const Elasticity& elasticity, double twist);
 
 }  // namespace flexarm

@@ -7,23 +7,23 @@
 
 namespace flexarm {
 
-/// Speed at which the smooth Coulomb effort F tanh(rate / v) is established [rad/s or m/s].
+/// The speed v of the smooth Coulomb effort F tanh(rate / v) [rad/s or m/s].
 constexpr double kFrictionSpeed = 1e-3;
 
-/// Smooth friction acts by this part of its capacity, tanh(rate / v), against the increment.
+/// Smooth friction against the increment, divided by its capacity F: tanh(rate / v).
 struct SmoothDirection {
-  double value = 0, slope = 0;  ///< and its derivative with respect to the increment
+  double value = 0, slope = 0;  ///< `slope`: derivative with respect to the increment
 };
-/// Zero in statics.
+/// Returns the smooth friction per capacity; zero in statics.
 SmoothDirection smooth_direction(const CoordinateStep& change);
-/// True where between these rates the direction changes by more than a half of the refinement's inverse.
+/// Whether smooth friction per capacity changes by more than 1 / (2 refinement) between these rates.
 bool is_coarse_turn(double begin_rate, double end_rate, double refinement);
 
-/// True where passive_effort() may be more than nothing.
+/// Whether passive_effort() may be different from zero.
 inline bool resists(const Coordinate& coordinate) {
   return coordinate.damping > 0 || (coordinate.friction > 0 && !coordinate.sticks) || coordinate.limit;
 }
-/// Of damping, stops and smooth friction of constant capacity.
+/// Returns the effort of damping, stops, and smooth friction of constant capacity.
 PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change);
 
 }  // namespace flexarm

@@ -12,14 +12,15 @@ namespace {
 
 using so3::hat;
 
-/// In the master node's frame.
+/// Displacement of the moved joint frame, in the master node's frame.
 Vector3 displacement(const JointMap& joint, const Released& released) {
   if (joint.kind != JointMapKind::Scalar) return joint.origin.orientation * released.displacement;
   const double u = released.displacement[0];
   return (joint.profile ? joint.profile->value(u) : u) * joint.translation;
 }
 
-/// Slope of the travel f(u) at the end of a step and over it, and their derivatives with respect to u at the end.
+/// Derivative (slope) of the travel f(u) at the end of a step, secant over the step, and the derivatives of both with
+/// respect to u at the end.
 struct TravelRate {
   double slope = 1, curvature = 0;
   double secant = 1, secant_derivative = 0;
@@ -30,12 +31,13 @@ TravelRate travel_rate(const JointMap& joint, double begin, double end) {
   return {f.derivative(end), f.second_derivative(end), f.secant(begin, end), f.secant_derivative(begin, end)};
 }
 
-/// B, the orientation of the joint frame.
+/// Returns B, the orientation of the joint frame.
 Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
   return master.rotation * joint.origin.orientation.toRotationMatrix();
 }
 
-/// From the master node to the origin of the moved joint frame, Lambda_m b + B (displacement), world axes.
+/// Returns the vector from the master node to the origin of the moved joint frame, Lambda_m b + B (displacement), in
+/// world axes.
 Vector3 lever_to_moved_frame(const JointMap& joint, const NodePose& master, const Released& released) {
   const bool travels =
       joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
@@ -70,13 +72,14 @@ struct WrenchAtFrame {
   Vector3 force, moment;
 };
 
-/// Adds lever arms to the maps of the wrench at the moved joint frame: the master's there, which stand in `maps`, and
-/// the slave's from there, `left` in the left maps and `right` at the end. That is what rigid joints before and behind
-/// it would do to them. `weight`: of the end in the left arms.
+/// Adds lever arms to maps that were made for a wrench at the origin of the moved joint frame. The arms from the master
+/// node to this origin are in `maps`; those from the origin to the slave node are `left` (for the left maps) and
+/// `right` (at the end of the step). The result is the same as with rigid joints before and after the joint. `weight`:
+/// weight of the end of the step in the left arms.
 void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, bool with_tangent, double weight,
               FoldMaps& maps) {
   const Eigen::Index count = maps.left.cols();
-  // d(left x force) = moment_rate * spin, for the slave's arm and for both.
+  // d(arm x force) = moment_rate(arm) * spin, for the slave's arm alone and for the sum of both arms.
   const auto moment_rate = [&](const Vector3& arm) {
     return Matrix3(weight * (arm * force.transpose()) - (weight * force.dot(arm)) * Matrix3::Identity());
   };
@@ -96,12 +99,12 @@ void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, b
   for (Eigen::Index k = 0; k < count; ++k) maps.left.col(k).head<3>() += maps.left.col(k).tail<3>().cross(left);
 }
 
-/// S(w)^-T v, of the tangent-scaled rotation increment w.
+/// Returns S(w)^-T v, with the tangent-scaled rotation increment w.
 Vector3 transposed_inverse_tangent(const Vector3& w, const Vector3& v) {
   return v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w;
 }
 
-/// Adds its travel to the maps of a joint with one coordinate; `w`: the master's rotation increment.
+/// Adds the travel to the maps of a joint with one coordinate. `w`: the master's rotation increment.
 void add_travel(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector3& w,
                 const Vector3& force, FoldMaps& maps, bool with_tangent, double arm_weight) {
   const Vector3 direction = begin.master.rotation * joint.translation;
@@ -116,8 +119,8 @@ void add_travel(const JointMap& joint, const JointPose& begin, const JointPose& 
   maps.moment_released.col(0) = -arm_weight * force.cross(travel);
 }
 
-/// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
-/// act on the axis of rotation and the direction of travel alone.
+/// Maps of joints with one coordinate, without lever arms. The formulas are those of incremental_matrix_maps(), applied
+/// to the axis of rotation and the direction of travel, so that vectors replace matrices.
 void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end,
                              const WrenchAtFrame& g, FoldMaps& maps, bool with_tangent, double arm_weight) {
   const Vector3 axis = begin.master.rotation * joint.rotation;
@@ -145,7 +148,7 @@ void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, cons
   if (!joint.translation.isZero(0)) add_travel(joint, begin, end, w, g.force, maps, with_tangent, arm_weight);
 }
 
-/// Joints without coordinates, or with free rotations; without lever arms.
+/// Maps of joints without coordinates or with free rotations, without lever arms.
 void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, const JointPose& end,
                              const WrenchAtFrame& g, FoldMaps& maps, bool with_tangent, double arm_weight) {
   const int count = released_count(joint.kind);
@@ -155,7 +158,8 @@ void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, cons
     maps.left.setZero(6, count);
   if (joint.kind == JointMapKind::Rigid) return;
 
-  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  // Rows that are conjugate to the relative translation and to the tangent-scaled relative rotation, in the joint
+  // frame.
   const Matrix3 B0 = joint_rotation(joint, begin.master);
   const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
   const Matrix3 S_inverse = cayley::inverse_tangent(w);
@@ -181,7 +185,7 @@ void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, cons
       S_inverse;
 }
 
-// What follows is most of a rigid arm's step; fused multiply-add saves a quarter of it.
+// The functions below take most of the time of a rigid arm's step. Fused multiply-add saves a quarter of that time.
 NodePose pose_at_arm(const JointMap& joint, const NodePose& master, const Released& released) {
   Quaternion turned = master.orientation;
   if (joint.kind == JointMapKind::Scalar)
@@ -255,7 +259,7 @@ void variational_maps(const JointMap& joint, const JointPose& pose, const Vector
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
-    case JointMapKind::Slide:  // has maps of its own (slide_map.h)
+    case JointMapKind::Slide:  // its maps are in slide_map.h
       break;
     case JointMapKind::Scalar: {
       const double u = pose.released.displacement[0];
@@ -307,7 +311,7 @@ ReleasedVector released_rates(const JointMap& joint, const JointPose& pose, cons
   variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 relative = slave_velocity - master_velocity;
   relative.head<3>() -= master_velocity.tail<3>().cross(maps.lever_right);
-  // The columns are orthogonal in every kind at the moved frame's origin.
+  // At the origin of the moved frame, the columns are orthogonal for every kind of joint.
   const Vector3 arm = pose.slave.rotation * joint.arm;
   const auto at_frame = [&](Vector6 velocity) {
     velocity.head<3>() -= velocity.tail<3>().cross(arm);

@@ -12,18 +12,18 @@
 namespace flexarm {
 namespace {
 
-/// Part of the way to where a stop gives way no further that an update may take. What goes too deep comes back by only
-/// a sixth of the remaining depth in each update.
+/// An update may penetrate a stop by at most this part of the remaining way to its largest penetration. After an update
+/// that goes too deep, Newton's method comes back by only a sixth of the remaining way in each iteration.
 constexpr double kLargestPart = 0.5;
-/// Angle, of the oscillator that the stop makes of its coordinate, that a step may go through: a fifth of half a turn,
-/// less with forces at its end, which are of first order where the stop is touched and left.
+/// Stop and coordinate form an oscillator. These are the largest phase angles by which a step may advance it. The angle
+/// is smaller for forces at the end of the step, which are only of first order when the stop is touched and left.
 constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 8;
-/// Smaller changes of an oscillation, relative to its amplitude, are those of something that rests on its stop.
+/// Largest change of the oscillation over a step, relative to its amplitude, that counts as resting on the stop.
 constexpr double kSwing = 0.5;
-/// Part of what a stop still gives way that a step cannot miss.
+/// A step may cross at most this part of the remaining way to the largest penetration.
 constexpr double kMuch = 0.1;
 
-/// Against the penetration, and its derivative with respect to the one at the end.
+/// The effort against the penetration, and its derivatives with respect to the penetration at the end.
 struct Push {
   double elastic = 0, elastic_slope = 0, viscous = 0, viscous_slope = 0;
   bool may_pull = false;
@@ -33,8 +33,8 @@ struct Push {
   double slope() const { return pulls() ? 0 : elastic_slope + viscous_slope; }
 };
 
-/// Over the step: the discrete gradient of the energy conserves it. The damper acts on the rate of the hardened
-/// penetration, which is continuous at touch and release.
+/// The mean push over a step. The elastic part is the discrete gradient of the energy, so it conserves energy. The
+/// damper acts on the rate of the hardened penetration, so that the push is continuous at touch and release.
 Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penetration& end, double step) {
   const double x0 = hardened(begin).value;
   const Hardened x1 = hardened(end), rise = quotient(begin, end);
@@ -43,7 +43,8 @@ Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penet
           penalty.damping * x1.slope / step, end.is_held};
 }
 
-/// At an instant. The damper takes hold within the first step of a hit, since the rate jumps at touch.
+/// The push at an instant. The damper's effort grows from zero within the first step of a hit, since the rate jumps at
+/// touch.
 Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at, double rate, double rate_slope) {
   const Hardened x = hardened(at);
   const double k = penalty.stiffness, c = penalty.end_damping, ramp = frequency / kRampAngle;
@@ -53,7 +54,7 @@ Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at
           c * (x.curvature * felt + x.slope * felt_slope), at.is_held};
 }
 
-/// Of both sides, each with the sign of what it does to the coordinate.
+/// One side of a stop. `sign`: direction of its effort on the coordinate.
 struct Side {
   double sign;
   Penetration begin, end;
@@ -66,12 +67,13 @@ std::array<Side, 2> sides(const LimitStop& limit, double begin, double end) {
           Side{-1, {begin - limit.upper, limit.give_above}, {end - limit.upper, limit.give_above}}};
 }
 
-/// Where no range is left both stops are touched, and none is penetrated: on either side one of them holds.
+/// Whether the limits coincide and the coordinate is exactly there. Then both stops are touched and none is penetrated,
+/// but a motion to either side is stopped by one of them.
 bool is_pinned(const LimitStop& limit, double position) {
   return limit.lower == limit.upper && position == limit.upper;
 }
 
-/// With the laws that the step holds.
+/// Returns both sides with the laws that the step prescribes (CoordinateStep::below, above).
 std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& change) {
   std::array<Side, 2> both = sides(limit, change.begin, change.end);
   const auto hold = [](Side& side, StopContact contact) {
@@ -84,12 +86,13 @@ std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& cha
   return both;
 }
 
-/// Of the oscillator that an undamped stop makes of its coordinate [rad/s].
+/// Circular frequency of the oscillator that the coordinate and an undamped stop form [rad/s].
 double frequency(const LimitStop& limit, const StopPenalty& penalty) {
   return limit.inertia > 0 ? std::sqrt(penalty.stiffness / limit.inertia) : 0.0;
 }
 
-/// Against the penetration; what Newmark's rule makes of it is the work of the mean of both ends.
+/// Effort against the penetration at the end of the step. With Newmark's rule, its work over the step is that of the
+/// mean of the efforts at both ends.
 PassiveEffort effort_at_end(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
                             const CoordinateStep& change) {
   const double scale = frequency(limit, penalty);
@@ -107,7 +110,7 @@ PassiveEffort mean_effort(const StopPenalty& penalty, const Side& side, double s
   return {push.value(), push.slope(), (push.pulls() ? -push.elastic : push.viscous) * way};
 }
 
-/// Against the penetration.
+/// Effort of one side against the penetration.
 PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
                        const CoordinateStep& change) {
   if (side.is_off || (!side.begin.is_felt() && !side.end.is_felt())) return {};

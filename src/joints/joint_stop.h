@@ -1,54 +1,57 @@
 #pragma once
-/// Stops of a coordinate: springs and dampers that harden. (docs/notes/stops.md)
+/// Stops of a coordinate: springs and dampers that harden with penetration. (docs/notes/stops.md)
 ///
-/// They act on the hardened penetration x = p / (1 - (p/d)^2)^2 of the true one p. Shallow penetrations are their own
-/// hardened ones; at p = d the stop gives way no further, whatever presses. With y the mean of both ends of a step,
+/// Let p be the penetration and d its upper bound. Spring and damper act on the hardened penetration x = p / (1 -
+/// (p/d)^2)^2. For small p, x equals p; towards p = d it grows without bound, so that no effort can press deeper. With
+/// y the mean of x at both ends of a step,
 ///   effort = dx/dp (k y + c dp/dt),   energy k x^2 / 2,
-/// where dx/dp is the quotient of the increments: work and energy agree exactly, and in x and the rate every hit is
-/// that of a linear spring and damper, with their restitution at any speed.
+/// where dx/dp is the quotient of the increments. So work and energy agree exactly. In terms of x and the rate, every
+/// hit is that of a linear spring and damper, with the same restitution at all speeds.
 
 #include "joints/coordinate_step.h"
 #include "model/model.h"
 
 namespace flexarm {
 
-/// By which the stops of a coordinate hold while they are touched lightly.
+/// Stiffness and damping of a coordinate's stops for small penetrations.
 struct StopPenalty {
   double stiffness = 0;    ///< [N/m or N m/rad]
-  double damping = 0;      ///< of means of a step [N s/m or N m s/rad]
-  double end_damping = 0;  ///< of forces at the end of a step [N s/m or N m s/rad]
+  double damping = 0;      ///< for means over a step [N s/m or N m s/rad]
+  double end_damping = 0;  ///< for forces at the end of a step [N s/m or N m s/rad]
 };
-/// Such that a contact lasts `contact_time` [s] were it without damping, and gives back what LimitStop::damping is for.
+/// Returns the penalty with which an undamped contact lasts `contact_time` [s], and with the damping ratios of
+/// LimitStop::damping.
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 
-/// Of both stops.
+/// Returns the effort of both stops on the coordinate.
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
-/// One side of a stop at an instant: the penetration, < 0 outside, its rate, and the push per dx/dp, < 0 where the stop
-/// would have to pull. Inside and outside by the law of the inside, which is smooth there.
+/// One side of a stop at an instant: the penetration (< 0 outside), its rate, and the push divided by dx/dp (< 0 if the
+/// stop would have to pull). The law for penetrations > 0 is also used outside, so all of these are smooth at touch.
 struct StopReach {
   double depth, rate, push;
 };
-/// `rate` of the coordinate; `at_end`: as CoordinateStep has it.
+/// `rate`: of the coordinate; `at_end`: see CoordinateStep.
 StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate,
                      bool at_end);
-/// Elastic energy at `position` [J].
+/// Returns the elastic energy at `position` [J].
 double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position);
-/// Slope of the effort against the rate, at rest at `position` [N s/m or N m s/rad].
+/// Returns the damping coefficient at rest at `position`: minus the derivative of the effort with respect to the rate
+/// [N s/m or N m s/rad].
 double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double position);
 
-/// How much of an update from one position to another a stop allows, 1 where it is far: half the way from the first one
-/// to where it gives way no further.
+/// Returns the part of an update from one position to another that the stops allow; 1 if they are far. An update may go
+/// at most half of the way from the present penetration (or the touch) to the largest one.
 double admissible_part(const LimitStop& limit, double from, double to);
-/// True if a whole hit would take fewer than five times `refinement` such steps (eight, where efforts are those at the
-/// end): much of its restitution is lost.
+/// Whether a whole hit would take fewer than five times `refinement` steps of this length (eight times, for efforts at
+/// the end of the step). The restitution would then be wrong.
 bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double refinement = 1);
-/// True if the step goes through a part of a hit worth mentioning, which is the smaller the larger `refinement` is;
-/// false if the coordinate rests on its stop.
-/// `begin_rate` of the coordinate; the mean rate of the step is that of both ends.
+/// Whether the step covers a considerable part of a hit; the limit is inversely proportional to `refinement`. False if
+/// the coordinate rests on its stop. `begin_rate`: of the coordinate; the rate at the end follows from the mean rate of
+/// the step.
 bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate,
             double refinement = 1);
-/// True if, from the beginning of the step alone, the coordinate may come to its stop in it and go through much of what
-/// the stop still gives way.
+/// Whether, judged by the beginning of the step alone, the coordinate may reach its stop within the step and cross much
+/// of the remaining way to the largest penetration.
 bool is_long_for_a_hit(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
                        double begin_rate);
 

@@ -11,12 +11,13 @@
 namespace flexarm {
 namespace {
 
-/// The motor's effort, and its derivatives with respect to the increments of rotor and coordinate.
+/// The motor's effort, and its derivatives with respect to the increments of rotor and coordinate (link).
 struct MotorEffort {
   double value, by_rotor, by_link;
 };
 
-/// The largest effort up to `limit` that a motor can give at a speed at which it pushes forth, and its derivative.
+/// Returns the largest effort in the direction of the rotor's `rate` that the motor can give, at most `limit`, and its
+/// derivative with respect to the rate.
 ValueAndSlope available(const Drive& drive, double limit, double rate) {
   assert(limit >= 0 && drive.effort_limit >= 0 && drive.velocity_limit > 0);
   const double part = std::clamp(1 - rate / drive.velocity_limit, 0.0, 1.0);
@@ -35,7 +36,7 @@ MotorEffort motor_effort(const Drive& drive, const MotorDemand& demand, const Co
   return {asked, demand.by_rotor, demand.by_link};
 }
 
-/// What the motor gives without what makes up for the rest of the step.
+/// Returns the motor's effort at the end of the step: that without MotorDemand::surplus.
 double effort_at_end(const Drive& drive, MotorDemand demand, const CoordinateStep& rotor, double link) {
   demand.constant -= demand.surplus;
   return motor_effort(drive, demand, rotor, link).value;
@@ -47,7 +48,8 @@ CoordinateStep with_increment(CoordinateStep change, double increment) {
   return change;
 }
 
-/// Of a rotor that turns with its coordinate. What the gear transmits, T, loses loss |T| against the motion.
+/// The action of a motor with a rigid gear. If the gear transmits the effort T, friction of loss |T| acts against the
+/// motion.
 MotorAction rigid_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
                          const CoordinateStep& link) {
   const double u = link.increment;
@@ -69,7 +71,8 @@ MotorAction rigid_action(const Drive& drive, const MotorDemand& demand, const Ro
   return out;
 }
 
-/// The balance of a rotor behind an elastic gear, with friction that acts in a direction known, or in that of its rate.
+/// The balance of efforts on a rotor behind an elastic gear, as a function of its increment u. Friction acts in a known
+/// direction, or smoothly by the rotor's rate.
 class RotorBalance {
  public:
   RotorBalance(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor, const CoordinateStep& link)
@@ -78,10 +81,10 @@ class RotorBalance {
   }
 
   struct Terms {
-    PassiveEffort gear;  // on the twist
+    PassiveEffort gear;  // effort on the twist
     MotorEffort motor;
-    double capacity, without_friction;       // of friction; the balance but for it
-    double own_slope, transmitted_by_twist;  // of the rotor's own terms; d|transmitted|/d(twist)
+    double capacity, without_friction;       // largest friction effort; balance without friction
+    double own_slope, transmitted_by_twist;  // d(inertia and motor terms)/du; d|effort of the gear|/d(twist)
   };
   Terms terms(double u) const {
     Terms out;
@@ -96,7 +99,7 @@ class RotorBalance {
   }
   SmoothDirection smooth(double u) const { return smooth_direction(with_increment(rotor_.change, u)); }
 
-  /// With friction in this direction.
+  /// Returns the balance with friction in this direction, and its derivative with respect to u.
   ValueAndSlope value(const Terms& t, const SmoothDirection& direction) const {
     return {t.without_friction + t.capacity * direction.value,
             t.own_slope - t.gear.slope + drive_.loss * t.transmitted_by_twist * direction.value +
@@ -106,7 +109,7 @@ class RotorBalance {
     return increasing_root([&](double u) { return value(terms(u), direction); }, guess, scale());
   }
 
-  /// At the root, with friction in the direction of the rotor's rate.
+  /// Solves the balance with smooth friction, and returns the action at its root.
   MotorAction smooth_action(double guess) const {
     Terms t{};
     SmoothDirection direction;
@@ -117,7 +120,7 @@ class RotorBalance {
     const double u = increasing_root(evaluate, guess, scale());
     return action(u, t, direction, true);
   }
-  /// `slides`: the rotor follows the coordinate; else friction holds it.
+  /// Returns the action at the increment u. `slides`: the rotor follows the coordinate; else friction holds it.
   MotorAction action(double u, const SmoothDirection& direction, bool slides) const {
     return action(u, terms(u), direction, slides);
   }
@@ -126,7 +129,7 @@ class RotorBalance {
   MotorAction action(double u, const Terms& t, const SmoothDirection& direction, bool slides) const {
     const ValueAndSlope balance = value(t, direction);
     const double by_link = t.gear.slope - drive_.loss * t.transmitted_by_twist * direction.value - t.motor.by_link;
-    // Where nothing holds the rotor, as within the play at rest, it does not feel the coordinate either.
+    // If nothing holds the rotor, as within the play in statics, it does not follow the coordinate either.
     const double yields = slides && balance.slope != 0 ? 1 / balance.slope : 0;
     MotorAction out;
     out.follows = -by_link * yields;
@@ -144,7 +147,7 @@ class RotorBalance {
     return out;
   }
   bool is_static() const { return link_.step == 0; }
-  /// The twist's step if the rotor's increment is u.
+  /// Returns the change of the twist over the step if the rotor's increment is u.
   CoordinateStep twist(double u) const {
     CoordinateStep twist = rotor_.change;
     twist.begin -= link_.begin;
@@ -159,7 +162,8 @@ class RotorBalance {
   const CoordinateStep& link_;
 };
 
-/// With Coulomb's law: the staircase of StickSlip in one unknown, whose branch shows by itself.
+/// The action with Coulomb's law: the staircase of StickSlip in one unknown. The signs of the balance at its two
+/// vertical parts tell the branch directly.
 MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor, double guess) {
   assert(rotor.rests || rotor.rate_slope != 0);
   const double rest = rotor.rests ? 0 : -rotor.rate_offset / rotor.rate_slope;
@@ -175,7 +179,7 @@ MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor,
   const auto at_low = balance.terms(low), at_high = balance.terms(high);
   if (at_low.without_friction - at_low.capacity > 0) return slipping(-1);
   if (at_high.without_friction + at_high.capacity < 0) return slipping(1);
-  // Below its rest a coordinate that comes to rest is not pushed on by friction, beyond its start not back.
+  // Between its start and its rest, friction does not push the rotor.
   if (low == high || at_low.without_friction >= 0) return held(low);
   if (at_high.without_friction <= 0) return held(high);
   return slipping(0);

@@ -1,30 +1,31 @@
 #pragma once
-/// The hardening of a stop or contact with its penetration. (docs/notes/stops.md 2)
+/// The hardening law of stops and contacts. (docs/notes/stops.md 2)
 
 #include <algorithm>
 #include <cmath>
 
 namespace flexarm {
 
-/// How deep something is penetrated, < 0 outside, and beyond which depth it gives way no further [m or rad].
+/// The depth of a penetration (< 0 outside), and the largest depth possible (`give`) [m or rad].
 struct Penetration {
   double depth, give;
-  bool is_held = false;  ///< the law of the inside goes on outside
+  bool is_held = false;  ///< the law for depths > 0 is also used outside
   bool is_felt() const { return depth > 0 || is_held; }
 };
 
-/// x = p / (1 - (p/give)^2)^2 of a penetration p, or the quotient of increments of both; derivatives by p at the end.
+/// The hardened penetration x = p / (1 - (p/give)^2)^2 for a depth p, or a quotient of increments of x and p.
+/// Derivatives are with respect to p (at the end of a step).
 struct Hardened {
   double value = 0, slope = 0, curvature = 0;
 };
 
-/// Of `give`, at most what a state beyond all bounds counts for.
+/// Returns depth / give, cut just below 1, so that states beyond the largest depth give finite numbers.
 inline double share(const Penetration& p) {
   constexpr double kDeepest = 1 - 1e-6;
   return std::min(p.depth / p.give, kDeepest);
 }
 
-/// 1 - s^2, exact near s = 1.
+/// Returns 1 - s^2 without cancellation near s = 1.
 inline double room(double s) {
   return (1 - s) * (1 + s);
 }
@@ -35,9 +36,10 @@ inline Hardened hardened(const Penetration& p) {
   return {p.depth / (a * a), (1 + 3 * s * s) / (a * a * a), 12 * s * (1 + s * s) / (a * a * a * a) / p.give};
 }
 
-/// Quotient of the increments of hardened and true penetration, and its derivative with respect to the end.
+/// Returns the quotient of the increments of hardened and true penetration, and its derivative with respect to the
+/// depth at the end.
 inline Hardened quotient(const Penetration& begin, const Penetration& end) {
-  // Increments whose quotients lose too much to round-off, relative to the way to where nothing gives way any further.
+  // Increments below this, relative to the remaining way to the largest depth, have quotients with too much round-off.
   constexpr double kTiny = 1e-6;
   const double change = end.depth - begin.depth;
   const Hardened x0 = hardened(begin), x1 = hardened(end);

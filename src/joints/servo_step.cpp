@@ -9,22 +9,23 @@
 namespace flexarm {
 namespace {
 
-/// Spectral radius of an infinitely stiff controller in steps of the scene: what a step leaves of its error.
+/// Spectral radius of an infinitely stiff controller: the factor by which a step of the scene's length reduces its
+/// error.
 constexpr double kStiffRemainder = 0.5;
-/// Of a step, by which times of samples may be missed: they are sums.
+/// Tolerance for the times of samples, relative to the step. Times of steps are sums with round-off.
 constexpr double kRoundOff = 1e-6;
 
 double error_at_begin(const ServoLaw& law, const ServoState& state, const ServoInput& input) {
   return law.mode == ServoMode::Velocity ? state.integral : input.set_point.begin - input.measured.begin;
 }
 
-/// Of the error over the step, but for what is measured.
+/// Returns the increment of the error over the step that is due to the set point.
 double set_increment(const ServoLaw& law, const ServoInput& input) {
   const SetPoint& s = input.set_point;
   return law.mode == ServoMode::Velocity ? input.measured.step * s.mean : s.end - s.begin;
 }
 
-/// The proportional effort for an increment s of the error, per gain: offset + slope s.
+/// An effort per unit gain as a function of the error's increment s over the step: offset + slope s.
 struct Term {
   double offset = 0, slope = 0;
 };
@@ -40,15 +41,15 @@ Term proportional_term(double error, const ServoState& state, const ServoInput& 
   return out;
 }
 
-/// What resists the acceleration of what is measured, per second of its effort: an inertance [s^2], and with the
-/// derivative one of [s].
+/// Returns the effort per acceleration of the measured quantity, with which the two stabilising terms (see
+/// servo_step.h) resist that acceleration.
 double inertance(const ServoLaw& law, const ServoInput& input) {
   if (input.relaxation == 0) return 0;
   return law.proportional * numerical_dissipation(2, kStiffRemainder, input.relaxation).inertance +
          law.derivative * 0.25 * input.relaxation;
 }
 
-/// The same of the derivative's, for an increment of what is measured, backwards.
+/// The effort of the derivative per unit gain, as a function of the negative increment of the measured quantity.
 Term derivative_term(const ServoState& state, const ServoInput& input) {
   const double h = input.measured.step, relaxation = input.relaxation;
   if (relaxation == 0) return {0, 1 / h};
@@ -56,7 +57,7 @@ Term derivative_term(const ServoState& state, const ServoInput& input) {
   return {0.25 * 2 * relaxation * follows * state.delayed_rate, 0.75 / h + 0.25 * follows};
 }
 
-/// Of the set point, where efforts are those at the end.
+/// Returns the rate of the set point, for efforts at the end of the step.
 double acting_rate(const ServoLaw& law, const SetPoint& set) {
   return law.mode == ServoMode::Velocity ? set.acting : set.acting_rate;
 }
@@ -75,7 +76,7 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
     return {input.feedforward + (is_mean ? set.mean : h == 0 ? set.end : set.acting), 0};
   }
   const double error = error_at_begin(law, state, input);
-  Term sum{input.feedforward, 0};  // in terms of the error's increment
+  Term sum{input.feedforward, 0};  // a function of the error's increment
   const auto add = [&](double gain, const Term& term) {
     sum.offset += gain * term.offset;
     sum.slope += gain * term.slope;
@@ -86,7 +87,7 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
   const double by_set = set_increment(law, input);
   ServoDemand out{sum.offset + sum.slope * by_set, -sum.slope};
   if (h == 0) {
-    if (law.mode == ServoMode::Velocity) out.slope = 0;  // nothing has a rate
+    if (law.mode == ServoMode::Velocity) out.slope = 0;  // in statics all rates are zero
     return out;
   }
   if (input.measured.at_end) {  // the rate at the end
@@ -119,7 +120,7 @@ double integral_at_end(const ServoLaw& law, const ServoInput& input, double incr
   const double integral = state.integral + (is_velocity ? s : h * (error + 0.5 * s));
   const double gain = is_velocity ? law.proportional : law.integral;
   if (law.tracking_time <= 0 || gain <= 0) return integral;
-  // The effort that would be asked for follows the one that is given.
+  // Back-calculation against windup: the integral changes such that the demanded effort follows the saturated one.
   const double lag = integral_share(input) * h / law.tracking_time;
   return integral + h * excess / (gain * law.tracking_time * (1 + lag));
 }
@@ -193,7 +194,7 @@ double held_output(const Servo& servo, const ServoState& state, double time, dou
   assert(step > 0 && "what is sampled is not for steps backwards");
   double sum = 0;
   for (std::size_t i = 0; i < state.outputs.size(); ++i) {
-    const double number = state.samples - 1 - static_cast<double>(i);  // before the first one: < 0
+    const double number = state.samples - 1 - static_cast<double>(i);  // of the sample; < 0: before the first one
     const double from = number * servo.sample_time + servo.delay;
     const double until = i == 0 ? time + step : from + servo.sample_time;
     const double part = (std::min(time + step, until) - std::max(time, from)) / step;

@@ -1,21 +1,22 @@
 #pragma once
-/// Controllers over a step. (docs/notes/drives.md)
+/// Efforts of controllers (servos) over a step. (docs/notes/drives.md)
 ///
-/// What a continuous controller asks for is affine in the increment of what it measures, and so known at the beginning
-/// of the step. It is that of means over the step, to which two terms of second order are added that bring stiff gains
-/// to rest: with the error's increment s, its average a and the rate v of what is measured,
-///   proportional [(s - a) stiffness - (v_1 - v_0)/h inertance]   with a_1 = a_0 + forgetting (s - a_0)
-/// as NumericalDissipation of the second order has it, and the three parts of DamperParts against v. Without them the
-/// mid-point rule would let an error that infinite gains leave alternate for ever.
+/// The demand of a continuous controller is affine in the increment of the measured quantity, so its coefficients are
+/// known at the beginning of the step. It is the demand for means over the step, plus two terms of second order that
+/// stabilise high gains. Without these, the mid-point rule would let the error alternate for ever if gains are high.
+/// With the increment s of the error, its moving average a, and the rate v of the measured quantity, the terms are
+///   proportional [(s - a) stiffness - (v_1 - v_0)/h inertance]   with a_1 = a_0 + forgetting (s - a_0),
+/// whose coefficients are those of a NumericalDissipation of second order, and a damper against v with the three parts
+/// of DamperParts for the derivative gain.
 ///
-/// A sampled one measures at the beginning of the step in which a sample is due, and holds its output.
+/// A sampled controller measures at the beginning of the step in which a sample is due, and holds its output.
 
 #include "joints/coordinate_step.h"
 #include "model/actuator.h"
 
 namespace flexarm {
 
-/// Over a step, of the set point.
+/// The set point over a step.
 struct SetPoint {
   SetPoint() = default;
   SetPoint(double at_begin, double at_end, double rate = 0)
@@ -28,59 +29,60 @@ struct SetPoint {
   double begin = 0, end = 0;
   double rate_at_end = 0;
   double mean = 0;                     ///< over the step
-  double acting = 0, acting_rate = 0;  ///< where efforts are those at the end: see StepForce
+  double acting = 0, acting_rate = 0;  ///< for efforts at the end of the step, see StepForce
 };
 
+/// What a controller needs to know about a step.
 struct ServoInput {
   double time = 0;          ///< at the beginning [s]
-  CoordinateStep measured;  ///< its increment and end are left open
-  double begin_rate = 0;    ///< of what is measured; with conserving schemes by their own rule
-  /// Rate at the end, where efforts are those at the end: offset + slope increment.
+  CoordinateStep measured;  ///< the measured quantity; increment and end are not set
+  double begin_rate = 0;    ///< of the measured quantity; in conserving schemes by their own rule
+  /// Rate at the end of the step, for efforts at the end: offset + slope increment.
   double rate_offset = 0, rate_slope = 0;
   SetPoint set_point;
   double feedforward = 0;
-  double relaxation = 0;  ///< of stiff gains [s]; 0: none, as where efforts are those at an instant
+  double relaxation = 0;  ///< time constant of the stabilising terms [s]; 0: none, as for efforts at an instant
 };
 
-/// What a controller asks for over a step: constant + slope increment.
+/// The demanded effort over a step as a function of the measured increment: constant + slope increment.
 struct ServoDemand {
   double constant = 0, slope = 0;
 };
 
 ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const ServoInput& input);
-/// How far the constant is above what is asked for at the end of the step, as MotorDemand::surplus; but for
-/// feedforward.
+/// Returns MotorDemand::surplus without the part of the feedforward: the constant of servo_demand() minus the demand at
+/// the end of the step.
 double servo_surplus(const ServoLaw& law, const ServoInput& input);
-/// Its memory at the end of the step, in which what is measured moved by `increment`, and `excess` is what the motor
-/// gave less what was asked of it.
+/// Updates a controller's memory at the end of a step. `increment`: of the measured quantity; `excess`: the motor's
+/// effort minus the demanded one.
 void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state);
 
-/// The integral alone of that memory.
+/// Returns only the integral that advance() would set.
 double integral_at_end(const ServoLaw& law, const ServoInput& input, double increment, double excess,
                        const ServoState& state);
 
-/// What the laws of controllers take at an instant.
+/// Input of a control law at an instant.
 struct ServoInstant {
   double set_point = 0, set_rate = 0;
-  double measured = 0, rate = 0;  ///< of what is measured
+  double measured = 0, rate = 0;  ///< the measured quantity and its rate
   double integral = 0, feedforward = 0;
 };
-/// What a continuous controller asks for at an instant [N m or N].
+/// Returns the demanded effort of a continuous controller at an instant [N m or N].
 double servo_effort(const ServoLaw& law, const ServoInstant& at);
 
-/// Its memory where it has been at rest for ever, with that position and output.
+/// Sets a controller's memory as if it had always been at rest with this measured position and this output.
 void settle(double measured, double output, ServoState& state);
-/// Lets the integral take over what is in proportion to the error; returns that error, in absolute value, or 0 where
-/// nothing integrates.
+/// Moves the proportional part of the effort into the integral, so that the error can become zero. Returns the absolute
+/// value of the error; 0, and does nothing, if the law has no integral of a position error.
 double hand_to_integral(const ServoLaw& law, double error, ServoState& state);
 
 // ---- sampled controllers
 
-/// Takes a sample if one is due. `set_rate`: of the set point since the last sample.
+/// Takes a sample if one is due. `set_rate`: mean rate of the set point since the last sample.
 void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state);
-/// Mean over the step of what is held.
+/// Returns the mean of the held output over the step.
 double held_output(const Servo& servo, const ServoState& state, double time, double step);
-/// Outputs that are to be remembered.
+/// Returns how many outputs the controller's memory needs.
 std::size_t outputs_of(const Servo& servo);
 
 }  // namespace flexarm

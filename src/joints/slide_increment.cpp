@@ -1,4 +1,4 @@
-// Maps of a slider's increments over a step, and their derivatives. (joints.md 4.3 to 4.5)
+// Computes the incremental maps of a slider over a step, and their derivatives. (joints.md 4.3 to 4.5)
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -14,15 +14,16 @@ namespace {
 using slide::Complex;
 using slide::RotationSplit;
 
-/// Relative to the element's length: below it the rotation over Delta X is taken from the curvature in the middle,
-/// which is accurate to its square; over a border, where the curvature jumps, only where nothing else is left.
+/// Travels Delta X below this, relative to the element's length, are short: the rotation over Delta X is computed from
+/// the curvature in the middle of the travel, with an error of second order. The curvature jumps at borders of
+/// elements, so there this is done only for travels where division by Delta X would fail.
 constexpr double kShort = 1e-5, kShortOverBorder = 1e-9;
-/// Nodal increments that differ by less have nothing to redistribute [rad^2].
+/// If the nodes' rotation increments differ by less than this (sum of squares), no moment is redistributed [rad^2].
 constexpr double kUniform = 1e-24;
-/// Nodes that are active in a step.
+/// Largest number of nodes that take part in a step (active nodes).
 constexpr int kMostActive = (SlideLine::kMostPieces + 2) * slide::kMostNodes;
 
-/// Of the active nodes, the first of which is the line's node `first`.
+/// Weights of the active nodes. The first active node is the line's node `first`.
 template <typename S>
 using ActiveWeights = std::array<S, kMostActive>;
 
@@ -39,7 +40,7 @@ ActiveWeights<double> active_weights(const slide::Place& place, int first) {
   return out;
 }
 
-/// The divided difference D between arc lengths in two pieces.
+/// Returns the divided differences D of the nodes' weights between two arc lengths, which may lie in different pieces.
 template <typename S>
 ActiveWeights<S> divided_difference(const SlideLine& line, int piece_from, double from, int piece_to, const S& to,
                                     int first) {
@@ -48,7 +49,7 @@ ActiveWeights<S> divided_difference(const SlideLine& line, int piece_from, doubl
     add_weights(slide::line_differences(line, piece_to, from, to), 1.0, first, out);
     return out;
   }
-  // By way of the borders between both elements: each part is free of cancellation.
+  // Split the travel at the borders where it leaves the first piece and enters the last one. No part has cancellation.
   const SlidePiece &p = line.pieces[piece_from], &q = line.pieces[piece_to];
   const bool forward = piece_to > piece_from;
   const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
@@ -60,7 +61,7 @@ ActiveWeights<S> divided_difference(const SlideLine& line, int piece_from, doubl
   return out;
 }
 
-/// One step's maps: rows first, then what varies in them.
+/// Computes the maps of one step: first the rows, then their derivatives.
 class IncrementalMaps {
  public:
   IncrementalMaps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent)
@@ -91,7 +92,7 @@ class IncrementalMaps {
   }
 
  private:
-  /// Of a piece in the configuration of a place.
+  /// Returns the frames of a piece in the configuration `nodes`, reusing those of `place` if it is in this piece.
   slide::PieceFrames<double> frames_of(int piece, const slide::LineNodes& nodes, const slide::Place& place) const {
     return piece == place.piece ? place.frames : slide::piece_frames<double>(line_, piece, nodes);
   }
@@ -160,8 +161,8 @@ class IncrementalMaps {
     }
   }
 
-  /// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX; where the contact is in the
-  /// middle, dr = d(2 I^j_c r_{j,1/2}).
+  /// Sets the columns of the slave at the end of the step: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX. If the
+  /// contact holds in the middle of the step, dr = d(2 I^j_c r_{j,1/2}).
   void set_columns() {
     const slide::LineWeights<double>& w = places_.end().weights;
     const double c = rule_.weight;
@@ -178,7 +179,7 @@ class IncrementalMaps {
     maps_.released_right << tangent, to_->spatial_curvature;
   }
 
-  /// Adds what a gradient with respect to the frames makes of the nodes' spins.
+  /// Adds a gradient with respect to the spins of the frames as rows with respect to the nodes' spins.
   void add_frames(const RotationSplit::Gradient& gradient, std::array<Vector3, kMostActive>& rows) const {
     for (int i = 0; i < from_->count; ++i)
       rows[from_->first + i - maps_.first] += from_->values[i].transpose() * gradient.at_01;
@@ -266,7 +267,7 @@ class IncrementalMaps {
   const SlideTravel& travel_;
   const SlideLine& line_;
   slide::LineNodes begin_, end_;
-  slide::TravelPlaces places_;  // from at the beginning, to at the end
+  slide::TravelPlaces places_;  // travel.from at the beginning, travel.to at the end
   int piece_from_, piece_to_;
   slide::PieceFrames<double> begin_frames_to_, end_frames_from_;
   double change_;  // Delta X
@@ -274,14 +275,16 @@ class IncrementalMaps {
   Vector3 force_, moment_;
   SlideMaps& maps_;
   ActiveWeights<double> begin_weights_, end_weights_, differences_;  // I_n, I_{n+1}, D
-  std::optional<FrameVariation> from_, to_;                          // at both places at the end
+  std::optional<FrameVariation> from_, to_;  // of the frames at travel.from and travel.to, both at the end
   std::optional<RotationSplit> split_;
   RotationSplit::Gradient along_, fixed_;
   Vector3 slope_begin_, slope_end_;
   std::array<Vector3, kMostActive> rotations_, displacements_;  // increments of the active nodes
-  std::array<double, kMostActive> slopes_{};                    // of contact(j) over X
-  // Sums over the nodes: e / Delta X, I_c^j w_j, their mean; sum of the squares of w_j - mean; redistributed moment.
+  std::array<double, kMostActive> slopes_{};                    // d(contact(j))/dX
+  // defect_: e / Delta X (joints.md 4.5). interpolated_: sum of I_c^j w_j over the active nodes, with their rotation
+  // increments w_j. mean_rotation_: mean of w_j.
   Vector3 defect_ = Vector3::Zero(), interpolated_ = Vector3::Zero(), mean_rotation_;
+  // spread_: sum of the squares of w_j - mean. share_: the moment of node j gets share_ (w_j - mean) by redistribution.
   double spread_ = 0, share_ = 0;
 };
 

@@ -79,7 +79,7 @@ RotationSplit::Gradient RotationSplit::of_along(const Vector3& moment, const Vec
   return out;
 }
 
-/// By how much a2 lags behind where its first frame slides.
+/// Returns minus the derivative of a2 with respect to the arc length due to the motion of its first frame, 10.
 Vector3 RotationSplit::slid_back(const Vector3& a2) const {
   return cayley::inverse_tangent(a2).transpose() * curvature_10_;
 }

@@ -1,9 +1,11 @@
 #pragma once
-/// Sections of a slide line between its nodes, for scalars of any kind.
+/// Interpolates sections of a slide line between its nodes. Templates on the scalar, since derivatives use complex
+/// steps.
 ///
-/// A plain line is that of the elements, whose tangents jump at their borders. A smooth one adds to each element what
-/// turns its end tangents into the average with the neighbour's, by cubic Hermite functions; the frames alike, by
-/// rotations: r + H (jump of r'), exp(H (jump of k)) Lambda. Nodes stay where they are. (joints.md 4.1, beyond.md 2)
+/// A plain line has the interpolation of the elements, whose tangents jump at the borders of elements. A smooth line
+/// adds cubic Hermite functions H to each element, with which the tangents at a border become an average of both
+/// elements' tangents. Frames are smoothed in the same way, by rotations: r + H (jump of r'), exp(H (jump of k))
+/// Lambda. Nodes do not move. (joints.md 4.1, beyond.md 2)
 
 #include <array>
 #include <cassert>
@@ -15,7 +17,7 @@
 
 namespace flexarm {
 
-/// A node's pose with scalars of any kind (complex steps).
+/// A node's pose with scalars of any type (for complex steps).
 template <typename S>
 struct PoseT {
   Vector3T<S> position;
@@ -35,11 +37,12 @@ namespace slide {
 constexpr int kMostNodes = 5;                 ///< of an element
 constexpr int kMostWeights = 3 * kMostNodes;  ///< nodes on which a section depends
 
-/// Of the nodes of a piece with `node_count` of them, in the parent interval.
+/// Coordinates of a piece's nodes in the parent interval [-1, 1], for one number of nodes.
 struct PieceNodes {
   std::array<double, kMostNodes> coordinates{};
   std::array<std::array<double, kMostNodes>, kMostNodes> reciprocal_distances{};  ///< 1 / (xi_i - xi_k)
 };
+/// By number of nodes.
 inline constexpr auto kPieceNodes = [] {
   std::array<PieceNodes, kMostNodes + 1> table{};
   for (int count = 2; count <= kMostNodes; ++count)
@@ -68,18 +71,18 @@ decltype(auto) with_node_count(int count, const Visit& visit) {
   }
 }
 
-/// Functions of a piece or a line over its nodes, one after the other from node `first` on: r = values[i] r_i.
+/// Weights of the nodes `first`, first + 1, ... of a line at an arc length: r = sum of values[i] r_{first + i}.
 template <typename S, int Most>
 struct Weights {
   int first = 0, count = 0;
-  std::array<S, Most> values, derivatives;  ///< the latter over the arc length
+  std::array<S, Most> values, derivatives;  ///< `derivatives`: with respect to the arc length [1/m]
 };
 template <typename S>
 using LagrangeWeights = Weights<S, kMostNodes>;
 template <typename S>
 using LineWeights = Weights<S, kMostWeights>;
 
-/// Lagrange functions of a piece.
+/// Returns the Lagrange functions of a piece.
 template <typename S>
 LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length) {
   assert(piece.node_count >= 2 && piece.node_count <= kMostNodes && piece.length() > 0);
@@ -104,8 +107,8 @@ LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length
   return out;
 }
 
-/// (I(to) - I(from)) / (to - from) of a piece's Lagrange functions, free of cancellation: [fg] = [f] g(to) + f(from)
-/// [g].
+/// Returns (I(to) - I(from)) / (to - from) for a piece's Lagrange functions. To avoid cancellation, the divided
+/// differences [.] of the factors are combined by [fg] = [f] g(to) + f(from) [g].
 template <typename S>
 std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double from, const S& to) {
   assert(piece.node_count >= 2 && piece.node_count <= kMostNodes && piece.length() > 0);
@@ -128,7 +131,7 @@ std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double f
   return out;
 }
 
-/// Cubics of a piece that are 0 at both ends and have the slope 1 at the beginning, or at the end.
+/// A cubic polynomial over a piece that is 0 at both ends, with the slopes 1 at one end and 0 at the other.
 struct Hermite {
   double begin, length;
   bool at_end;
@@ -142,7 +145,7 @@ struct Hermite {
     const S xi = (arc_length - begin) / length;
     return at_end ? xi * (3.0 * xi - 2.0) : (1.0 - xi) * (1.0 - 3.0 * xi);
   }
-  /// (H(to) - H(from)) / (to - from).
+  /// Returns (H(to) - H(from)) / (to - from) without cancellation.
   template <typename S>
   S difference(double from, const S& to) const {
     const double s = (from - begin) / length;
@@ -152,9 +155,9 @@ struct Hermite {
   }
 };
 
-/// Calls visit(neighbour's index, arc length of the border, share, Hermite) for the borders of a piece at which a
-/// smooth line is not the elements': its tangent there is the piece's + share (the neighbour's - the piece's), the
-/// shares being weighted by lengths such that both sides agree.
+/// Calls visit(neighbour's index, arc length of the border, share, Hermite) for each border of a piece where a smooth
+/// line differs from the elements. The tangent of the line there is the piece's tangent + share (the neighbour's - the
+/// piece's). The share depends on the lengths of both pieces, such that both sides have the same tangent.
 template <class Visit>
 void for_each_smoothed_border(const SlideLine& line, int index, const Visit& visit) {
   assert(index >= 0 && index < static_cast<int>(line.pieces.size()));
@@ -168,8 +171,8 @@ void for_each_smoothed_border(const SlideLine& line, int index, const Visit& vis
   }
 }
 
-/// Adds the jumps of the tangents at the piece's borders to weights of its support; `factors(hermite)`: of the values
-/// and of the derivatives.
+/// Adds the smoothing of a piece to `weights`: the jumps of the tangents at its borders, times factors.
+/// `factors(hermite)` returns the pair of factors for the values and the derivatives.
 template <typename S, class Factors>
 void add_smoothing(const SlideLine& line, int index, const Factors& factors, LineWeights<S>& weights) {
   for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite& hermite) {
@@ -196,7 +199,7 @@ LineWeights<S> empty_weights(const SlideLine& line, int index) {
   return out;
 }
 
-/// Functions of the line at an arc length of the piece `index`.
+/// Returns the weights of the line's nodes at an arc length in the piece `index`.
 template <typename S>
 LineWeights<S> line_weights(const SlideLine& line, int index, const S& arc_length) {
   LineWeights<S> out = empty_weights<S>(line, index);
@@ -212,7 +215,7 @@ LineWeights<S> line_weights(const SlideLine& line, int index, const S& arc_lengt
   return out;
 }
 
-/// Their divided differences within the piece `index`, as values.
+/// Returns the divided differences of line_weights() between two arc lengths in the piece `index`, as `values`.
 template <typename S>
 LineWeights<S> line_differences(const SlideLine& line, int index, double from, const S& to) {
   LineWeights<S> out = empty_weights<S>(line, index);
@@ -224,13 +227,13 @@ LineWeights<S> line_differences(const SlideLine& line, int index, double from, c
   return out;
 }
 
-/// Rotation and spatial curvature by a piece's own interpolation.
+/// Rotation and spatial curvature of a section.
 template <typename S>
 struct Frame {
   Matrix3T<S> rotation;
   Vector3T<S> spatial_curvature;
 };
-/// Local rotations of a piece's nodes, of which all its frames are made.
+/// Local rotations of a piece's nodes, from which all its frames are interpolated.
 template <typename S>
 struct PieceRotations {
   Matrix3T<S> reference;
@@ -259,12 +262,12 @@ Frame<S> element_frame(const SlidePiece& piece, const S& arc_length, const Piece
     slope += w.derivatives[i] * rotations.vectors[i];
   }
   const so3::ExponentialMap<S> map(theta);
-  // Local vectors are kept in space, so T theta' is the spin per arc length in space.
+  // The local rotation vectors have world axes, so T theta' is the spin per arc length in world axes.
   return {map.rotation() * rotations.reference, map.tangent() * slope};
 }
 
-/// What all frames of a line in a piece are made of: its local rotations, and shares of the jumps of k at its smoothed
-/// borders, in their order.
+/// Data from which all frames of a line in one piece are computed: the piece's local rotations, and for each smoothed
+/// border share * jump of k, in the order of for_each_smoothed_border().
 template <typename S>
 struct PieceFrames {
   PieceRotations<S> rotations;
@@ -284,7 +287,8 @@ PieceFrames<S> piece_frames(const SlideLine& line, int index, const Poses& poses
   return out;
 }
 
-/// What a smooth line's frame is turned by, psi = sum H (jump of k), and its derivative over the arc length.
+/// Returns the rotation vector that smooths a frame, psi = sum H (jump of k), and its derivative with respect to the
+/// arc length.
 template <typename S>
 std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int index, const S& arc_length,
                                                     const std::array<Vector3T<S>, 2>& jumps) {
@@ -300,7 +304,7 @@ std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int i
 
 }  // namespace slide
 
-/// Rotation and curvature only, in the piece `index`.
+/// Returns rotation and curvature of the line at an arc length in the piece `index`.
 template <typename S>
 slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const slide::PieceFrames<S>& frames) {
   slide::Frame<S> frame = slide::element_frame(line.pieces[index], arc_length, frames.rotations);
@@ -312,7 +316,7 @@ slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, 
   frame.spatial_curvature = (map.tangent() * slope + rotation * frame.spatial_curvature).eval();
   return frame;
 }
-/// `poses(i)`: PoseT<S> of the line's node i.
+/// The same from `poses(i)`: PoseT<S> of the line's node i.
 template <typename S, class Poses>
 slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
   return frame_at(line, index, arc_length, slide::piece_frames<S>(line, index, poses));
@@ -320,17 +324,17 @@ slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, 
 
 namespace slide {
 
-/// A section at one arc length of its line, in one configuration: what its pose and a step's maps are made of.
+/// A section at one arc length of its line in one configuration: data for its pose and for the maps of a step.
 struct Place {
   int piece = 0;                ///< index in the line's pieces
-  PieceFrames<double> frames;   ///< of the piece, in space
-  LineWeights<double> weights;  ///< of the line's nodes at the arc length: [-], derivatives [1/m]
-  Frame<double> frame;          ///< of the section: section to space, curvature in space [1/m]
+  PieceFrames<double> frames;   ///< of the piece, in world axes
+  LineWeights<double> weights;  ///< of the line's nodes at the arc length [-]; derivatives [1/m]
+  Frame<double> frame;          ///< rotation from section to world axes; curvature in world axes [1/m]
 };
 
 }  // namespace slide
 
-/// The section at arc length X.
+/// Returns the section at an arc length in the piece `index`. `poses(i)`: PoseT<S> of the line's node i.
 template <typename S, class Poses>
 Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
   const slide::Frame<S> frame = frame_at(line, index, arc_length, poses);

@@ -1,5 +1,5 @@
 #pragma once
-/// Quantities that both forms of a slider's maps share.
+/// Internals that slide_map.cpp and slide_increment.cpp share.
 
 #include <cassert>
 #include <optional>
@@ -10,10 +10,10 @@
 namespace flexarm::slide {
 
 using Complex = std::complex<double>;
-/// Of complex steps: no cancellation, so as small as it likes.
+/// Length of complex steps. There is no cancellation, so it can be tiny.
 constexpr double kComplexStep = 1e-30;
 
-/// A line's nodes in one configuration.
+/// Gives the poses of a line's nodes in one configuration.
 struct LineNodes {
   const SlideLine& line;
   const std::vector<NodePose>& nodes;  ///< of the model
@@ -37,7 +37,7 @@ struct ComplexLineNodes {
   }
 };
 
-/// Where a travel begins and ends: what it has at hand, or else found here.
+/// The places where a travel begins and ends: those that the travel has, or else computed here.
 class TravelPlaces {
  public:
   explicit TravelPlaces(const SlideTravel& travel)
@@ -56,11 +56,11 @@ class TravelPlaces {
   const Place *begin_, *end_;
 };
 
-/// What the forms of the incremental maps differ in.
+/// The parameters in which the forms of the incremental maps differ.
 struct ContactRule {
-  double weight = 0.5;        ///< c, of the end of the step in the nodes' weights
-  double arm_product = 0;     ///< a (1 - a), a: of the end in moment arms; where what the arms lack goes into moments
-  bool is_in_middle = false;  ///< the contact holds in the middle of the step only
+  double weight = 0.5;        ///< c: weight of the end of the step in the nodes' weights
+  double arm_product = 0;     ///< SmEm: a (1 - a), with the weight a of the end in moment arms; else 0
+  bool is_in_middle = false;  ///< the contact holds only in the middle of the step
 };
 
 inline ContactRule contact_rule(SlideStep step, double arm_weight) {
@@ -81,8 +81,8 @@ inline ContactRule contact_rule(SlideStep step, double arm_weight) {
   return {arm_weight, arm_weight * (1 - arm_weight), false};
 }
 
-/// Sizes the maps for the nodes between two pieces and forgets what they were, but for `moment_master`, whose blocks
-/// are all set where there is a tangent.
+/// Resizes the maps for the nodes of two pieces and those between them, and sets them to zero. `moment_master` is only
+/// resized, since every tangent sets all of its blocks.
 void set_active(const SlideLine& line, int piece, int other_piece, bool with_tangent, SlideMaps& maps);
 
 }  // namespace flexarm::slide

@@ -1,5 +1,5 @@
 #pragma once
-/// How the frame of a line's section varies with the rotations of its nodes.
+/// The variation of a section's frame on a slide line with the spins of the line's nodes.
 
 #include "joints/slide_section.h"
 
@@ -7,7 +7,7 @@ namespace flexarm {
 
 namespace slide {
 
-/// The variation within a piece by its own interpolation; see FrameVariation.
+/// The variation by a piece's own interpolation, without smoothing; see FrameVariation.
 struct ElementVariation {
   int first = 0, count = 0;
   std::array<Matrix3, kMostNodes> values, derivatives;
@@ -43,7 +43,8 @@ ElementVariation element_variation(const SlidePiece& piece, double arc_length, c
   return out;
 }
 
-/// What all variations in a piece have in common: those of both sides at its smoothed borders, in their order.
+/// The element variations on both sides of a piece's smoothed borders, in the order of for_each_smoothed_border(). All
+/// frame variations in the piece need them.
 struct BorderVariations {
   template <class Poses>
   BorderVariations(const SlideLine& line, int index, const Poses& poses) {
@@ -59,8 +60,9 @@ struct BorderVariations {
 
 }  // namespace slide
 
-/// Spin of the section = sum_i values[i] spin_{first + i}, and derivatives = d(values)/dX, so that the spatial
-/// curvature varies as d(k) = sum_i derivatives[i] spin_{first + i} + spin x k. They sum to I and to 0.
+/// The variation of a section's frame: spin of the section = sum_i values[i] spin_{first + i}, with the spins of the
+/// line's nodes. The derivatives are d(values)/dX, so that the spatial curvature varies by
+/// d(k) = sum_i derivatives[i] spin_{first + i} + spin x k. The values sum to I, the derivatives to 0.
 struct FrameVariation {
   template <class Poses>
   FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses)
@@ -92,10 +94,10 @@ struct FrameVariation {
     slide::for_each_smoothed_border(
         line, index, [&](int neighbour, double, double share, const slide::Hermite& hermite) {
           const double value = hermite.value(arc_length), derivative = hermite.slope(arc_length);
-          // d(jump of k) = sum (I_g' of the neighbour - own) spin + spin of the border's node x k.
+          // d(jump of k) = sum of (neighbour's I_g' - own I_g') spin + spin of the border's node x (jump of k).
           const Matrix3 left = value * tangent, left_derivative = value * tangent_derivative + derivative * tangent;
           const auto add_side = [&](int piece, double sign, const slide::ElementVariation& at) {
-            // The border's node of this piece: welded beams have one each.
+            // The node of this piece at the border; beams that are welded together have one each.
             const SlidePiece& side = line.pieces[piece];
             const int node = (piece == std::max(index, neighbour) ? side.first_node : side.end_node() - 1) - first;
             const Matrix3 spun = sign * so3::hat(at.spatial_curvature);

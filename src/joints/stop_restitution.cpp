@@ -7,12 +7,12 @@
 namespace flexarm {
 namespace {
 
-/// Penetration and its rate of an oscillator of frequency 1, and damping ratio.
+/// An oscillator with the circular frequency 1: penetration x, its rate v, and the damping ratio.
 struct Oscillator {
   double x, v, ratio;
 
   double force() const { return x + 2 * ratio * v; }
-  /// Runge's and Kutta's step.
+  /// Returns the oscillator after a step h of the classical Runge-Kutta method.
   Oscillator after(double h) const {
     const auto rate = [&](double x_, double v_) { return std::array{v_, -x_ - 2 * ratio * v_}; };
     const auto k1 = rate(x, v), k2 = rate(x + h / 2 * k1[0], v + h / 2 * k1[1]);
@@ -22,7 +22,7 @@ struct Oscillator {
   }
 };
 
-/// Speed with which the contact ends: where its force vanishes, since a stop never pulls.
+/// Returns the speed at the end of the contact, which is where its force vanishes, since a stop never pulls.
 double speed_at_release(Oscillator contact) {
   double step = 0.01;
   while (step > 1e-12) {
@@ -39,13 +39,14 @@ double restitution_of_means(double ratio) {
   return speed_at_release(Oscillator{0, 1, ratio}.after(1e-6));
 }
 
-/// The damper takes hold with the spring, as a spring of its own, until it has its full force.
+/// In the first phase, the damper acts as a second spring, until it reaches its full force. This function starts at the
+/// end of that phase.
 double restitution_at_end(double ratio) {
   const double v = 1 / std::sqrt(1 + kRampAngle * kRampAngle + 2 * ratio * kRampAngle);
   return speed_at_release({kRampAngle * v, v, ratio});
 }
 
-/// The ratio at which a restitution, which falls with it, has this value.
+/// Returns the damping ratio for a restitution, by bisection; the restitution decreases with the ratio.
 template <class Restitution>
 double ratio_for(const Restitution& restitution, double value) {
   double low = 0, high = 10;

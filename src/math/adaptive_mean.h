@@ -1,5 +1,5 @@
 #pragma once
-/// Means of functions that may jump or have kinks anywhere.
+/// Computes means of functions over an interval. The functions may have jumps and kinks.
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 namespace flexarm {
 namespace mean_rule {
 
-// Places in an interval from -1 to 1, and weights by which a polynomial through the values there gives the value at
-// kTest: of 4 places -1, -kNear, kNear, 1, and of 7, -1, -kFar, -kNear, 0, kNear, kFar, 1. The test lies beside the
-// middle, so that stairs are not taken for a slope.
+// Abscissae in the interval from -1 to 1: four (-1, -kNear, kNear, 1), or seven (-1, -kFar, -kNear, 0, kNear, kFar, 1).
+// kFrom4, kFrom7: weights with which the interpolation polynomial through the values there gives the value at kTest.
+// kTest is not in the middle, so that a staircase is not taken for a straight line.
 constexpr double kTest = 0.2311, kNear = 0.44721359549995793, kFar = 0.81649658092772603;
 constexpr std::array<double, 4> kFrom4 = {-0.070446997644374981, 0.28589746233639474, 0.89734352516360527,
                                           -0.112793989855625};
@@ -22,11 +22,13 @@ constexpr std::array<double, 7> kFrom7 = {-0.029952145923186596, 0.0905110633114
 
 }  // namespace mean_rule
 
-/// Mean of f over [begin, end], begin < end, to about 1e-13 of its largest absolute value there: by Lobatto's rule of
-/// four points where the cubic through these foretells a fifth value; else by its extension to seven points, exact to
-/// degree 9 (Gander and Gautschi, BIT 40, 2000), where their polynomial does; else of both halves, until they are as
-/// short as times can be told apart. Values at the ends are limits from inside: a jump at an end belongs to the
-/// outside. Not finite where a value is not. No allocation; some 4,000 values at most.
+/// Returns the mean of f over [begin, end], begin < end, to about 1e-13 of the largest absolute value of f there.
+///
+/// Uses Lobatto's rule with four points if the cubic through these predicts a fifth value. Else uses its extension to
+/// seven points, which is exact to degree 9 (Gander and Gautschi, BIT 40, 2000), if their polynomial predicts that
+/// value. Else bisects the interval, down to the resolution of double numbers. Values at the ends are limits from
+/// inside, so a jump exactly at an end has no effect. The result is not finite if a value is not. Does not allocate,
+/// and evaluates f about 4,000 times at most.
 template <class Function>
 double adaptive_mean(const Function& f, double begin, double end) {
   assert(begin < end);
@@ -34,7 +36,7 @@ double adaptive_mean(const Function& f, double begin, double end) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon(), kTolerance = 2e-14;
   constexpr int kMostValues = 4000, kDepth = 64;
   const double width = end - begin;
-  const double resolution = kEpsilon * std::max(std::abs(begin), std::abs(end));  // of times
+  const double resolution = kEpsilon * std::max(std::abs(begin), std::abs(end));  // round-off of an abscissa
   const double inside = std::min(0.25 * width, std::max(std::ldexp(width, -44), 2 * resolution));
   struct Piece {
     double from, to, f_from, f_to;
@@ -54,9 +56,9 @@ double adaptive_mean(const Function& f, double begin, double end) {
     const auto [low, high] = std::minmax({p.f_from, p.f_to, left, right, test});
     if (low == high) mean = low;  // without round-off
     largest = std::max({largest, std::abs(low), std::abs(high)});
-    // Times are rounded: where a function changes so much its values are not known any better.
+    // Abscissae have round-off. So the values of a function that changes rapidly are uncertain, too.
     const double tolerance = kTolerance * largest + 4 * resolution / width * (high - low);
-    // A value that is not a number ends this as well.
+    // This condition is also false if a value is NaN, which ends the bisection.
     if (error > tolerance && half > 2 * resolution && values < kMostValues && pieces + 2 <= kDepth) {
       const double f_middle = f(middle), far_left = f(middle - kFar * half), far_right = f(middle + kFar * half);
       values += 3;
@@ -74,11 +76,12 @@ double adaptive_mean(const Function& f, double begin, double end) {
   return sum;
 }
 
-/// The same of a function that may have no corner at all, which is tried first: by Simpson's rule, where the parabola
-/// through its three values foretells a fourth one to 3e-10 of the largest, else by Lobatto's rule, where the cubic
-/// does. Of a wave that leaves Simpson's rule 1e-13 of it, and Lobatto's less. `is_smooth`: it has no branches, so that
-/// no pulse can hide from four values. Values at the ends are those at the ends, so that who remembers them has them
-/// for the next interval.
+/// The same for a function that is probably smooth: tries cheaper rules first. `is_smooth`: the function has no
+/// branches, so that no pulse can hide between four values; then Simpson's rule is used if the parabola through its
+/// three values predicts a fourth one to 3e-10 of the largest value. Else Lobatto's rule with four points is used if
+/// the cubic predicts that value. For a sine wave, the error of Simpson's rule is then 1e-13 of its amplitude, that of
+/// Lobatto's rule less. Evaluates f exactly at both ends, so that a function that caches its values can reuse them in
+/// the next interval.
 template <class Function>
 double mean_of_what_may_be_smooth(const Function& f, double begin, double end, bool is_smooth) {
   assert(begin < end);

@@ -13,12 +13,13 @@ namespace {
 
 constexpr double kTurn = 6.283185307179586;
 
-/// sin(x)/x.
+/// Returns sin(x)/x.
 double sinc(double x) {
   return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
 }
 
-/// Second derivatives at the knots of the periodic cubic spline with intervals `h` and slopes `d` of the chords.
+/// Returns the second derivatives, at the knots, of the periodic cubic spline with the intervals `h` and the slopes `d`
+/// of the chords.
 Eigen::VectorXd periodic_spline(const std::vector<double>& h, const std::vector<double>& d) {
   const int n = static_cast<int>(h.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -111,7 +112,7 @@ double CamProfile::secant(double from, double to) const {
     const double* c = first.c;
     return c[1] + c[2] * (a + b) + c[3] * (a * a + a * b + b * b);
   }
-  // Over a knot: the two parts, each free of cancellation if it is short.
+  // The secant passes a knot. If it is short, add up both parts, which have no cancellation.
   const bool forward = to > from;
   const double knot = forward ? last.begin + turns_to * kTurn : first.begin + turns_from * kTurn;
   if (std::abs(to - from) > 1e-3 || knot == from || knot == to) return (value(to) - value(from)) / (to - from);
@@ -127,7 +128,8 @@ double CamProfile::secant(double from, double to) const {
 
 double CamProfile::secant_derivative(double from, double to) const {
   const double change = to - from;
-  // The mean of s f''(from + s change) over s in [0, 1]: at the centre of that weight, to the second order.
+  // This is the integral of s f''(from + s change) over s in [0, 1]. Evaluate f'' at the centre of the weight s, s =
+  // 2/3, which is accurate to second order.
   if (std::abs(change) < 1e-5) return 0.5 * second_derivative(from + 2.0 / 3 * change);
   return (derivative(to) - secant(from, to)) / change;
 }

@@ -1,9 +1,9 @@
 #pragma once
 /// Finite rotations by tangent-scaled rotation vectors w = 2 tan(|theta|/2) theta/|theta| (Cayley transform).
 ///
-/// Rational, hence without trigonometry, in everything but the conversions to and from rotation vectors. Conventions as
-/// in so3.h: d(cay w) = hat(dvartheta) cay w with dvartheta = S(w) dw. |w| grows without bound as the angle
-/// approaches pi. (Muñoz 2004, appendix G)
+/// All operators are rational functions, without trigonometry, except the conversions to and from rotation vectors.
+/// Conventions as in so3.h: d(cay w) = hat(dvartheta) cay w with dvartheta = S(w) dw. |w| grows without bound as the
+/// angle approaches pi. (Muñoz 2004, appendix G)
 
 #include "math/so3.h"
 
@@ -81,9 +81,9 @@ inline Vector3T<typename Q::Scalar> increment(const Eigen::QuaternionBase<Q>& qu
   return {scale * quaternion.x(), scale * quaternion.y(), scale * quaternion.z()};
 }
 
-/// Spatial increment w with cay(w) = to from^-1, for quaternions of any norm: that of d = to - from and from, for
-/// to from* = |from|^2 + d from*. What does not turn has none, also where products are fused with sums; and the less
-/// it turns, the less is rounded.
+/// Returns the spatial increment w with cay(w) = to from^-1, for quaternions of any norm. It is computed from
+/// d = to - from, since to from* = |from|^2 + d from*. So it is exactly zero for equal quaternions, also with fused
+/// multiply-add, and the round-off is smaller for smaller rotations.
 template <typename P, typename Q>
 inline Vector3T<typename P::Scalar> increment(const Eigen::QuaternionBase<P>& from,
                                               const Eigen::QuaternionBase<Q>& to) {
@@ -185,9 +185,9 @@ inline Vector3T<typename V::Scalar> to_rotation_vector(const Eigen::MatrixBase<V
   return so3::log(quaternion(w));
 }
 
-/// U(w) with dw = U dtheta, theta being the rotation vector of w:
+/// U(w) with dw = U dtheta, where theta is the rotation vector of w:
 /// U = (1 + w.w/4) e e^T + (|w|/2) / arctan(|w|/2) (I - e e^T). The sign inside the first bracket is plus; (G.24) of
-/// Muñoz 2004 prints a minus. Evaluated as S^-1 T, both sides of the spin, which has no 0/0 at w = 0.
+/// Muñoz 2004 prints a minus. It is evaluated as S^-1 T (dvartheta = T dtheta = S dw), which has no 0/0 at w = 0.
 template <typename V>
 inline Matrix3T<typename V::Scalar> scaling_derivative(const Eigen::MatrixBase<V>& w) {
   return inverse_tangent(w) * so3::tangent(to_rotation_vector(w));

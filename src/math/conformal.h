@@ -1,11 +1,11 @@
 #pragma once
 /// Finite rotations by conformal rotation vectors c = 4 tan(|theta|/4) theta/|theta| (Wiener-Milenkovic parameters).
 ///
-/// Rational like cayley.h, but regular through pi: only at 2 pi does |c| grow without bound. c and its shadow
-/// -16 c / |c|^2 are the same rotation; the one with |c| <= 4 has the angle <= pi. With x = c.c/16 = tan^2(theta/4) and
-/// H = cay(c/2), the rotation by half the angle,
+/// Rational like cayley.h, but regular at pi: |c| grows without bound only at 2 pi. c and its shadow -16 c / |c|^2 are
+/// the same rotation; the one with |c| <= 4 has the angle <= pi. With x = c.c/16 = tan^2(theta/4) and H = cay(c/2), the
+/// rotation by half the angle,
 ///     Lambda = H^2,   q = (1 - x, c/2) / (1 + x),   T = H / (1 + x).
-/// T is a multiple of a rotation: it keeps angles, hence the name, and T^-1 = (1 + x) H^T is a polynomial of c.
+/// T is a multiple of a rotation, so it preserves angles (hence the name), and T^-1 = (1 + x) H^T is a polynomial of c.
 /// (T follows from spin = 2 (q_0 dq_v - q_v dq_0 + q_v x dq_v).) Conventions as in so3.h: d(Lambda) = hat(dvartheta)
 /// Lambda with dvartheta = T(c) dc. (docs/notes/beam.md, sec. 1.4; Milenkovic 1982)
 
@@ -20,8 +20,8 @@ inline S squared_tangent(const Vector3T<S>& c) {
   return S(0.0625) * so3::dot(c, c);
 }
 
-/// Derivative with respect to c of T(c)^-1 a = (1 - x) a - c x a / 2 + (c.a) c / 8; but for the sign of the skew part
-/// and a factor, it is in the derivatives of T and T^T, too.
+/// Returns the derivative with respect to c of T(c)^-1 a = (1 - x) a - c x a / 2 + (c.a) c / 8, for `sign` = 1. The
+/// derivatives of T and T^T contain it, too, up to a factor and the sign of the skew part.
 template <typename S>
 inline Matrix3T<S> xi_polynomial(const Vector3T<S>& c, const S& sign, const Vector3T<S>& a) {
   // c a^T - a c^T = hat(a x c).
@@ -73,16 +73,16 @@ inline Vector3T<typename V::Scalar> to_rotation_vector(const Eigen::MatrixBase<V
   return so3::detail::arctangent_ratio<S>(detail::squared_tangent(Vector3T<S>(c))) * c;
 }
 
-/// The other vector of the same rotation, -16 c / |c|^2, whose angle is 2 pi - theta about the opposite axis; its
-/// quaternion has the other sign. Infinite for c = 0.
+/// The other vector of the same rotation, -16 c / |c|^2. Its angle is 2 pi - theta about the opposite axis, and its
+/// quaternion has the opposite sign. Infinite for c = 0.
 template <typename V>
 inline Vector3T<typename V::Scalar> shadow(const Eigen::MatrixBase<V>& c) {
   using S = typename V::Scalar;
   return (S(-16) / so3::dot(c, c)) * c;
 }
 
-/// c21, |c21| <= 4, with Lambda(c21) = Lambda(c2) Lambda(c1). Regular for all c1, c2: of the product and its shadow the
-/// one with the larger denominator is formed.
+/// c21, |c21| <= 4, with Lambda(c21) = Lambda(c2) Lambda(c1). Regular for all c1, c2: from the product and its shadow,
+/// the one with the larger denominator is computed.
 template <typename V, typename U>
 inline Vector3T<typename V::Scalar> compound(const Eigen::MatrixBase<V>& c2, const Eigen::MatrixBase<U>& c1) {
   using S = typename V::Scalar;
@@ -127,7 +127,7 @@ inline Matrix3T<typename V::Scalar> inverse_tangent_derivative(const Eigen::Matr
   return result;
 }
 
-/// T' = d/ds T(c(s)) for dc = d/ds c. T = g^2 (T^-1)^T with g = 1 / (1 + x), hence the form.
+/// T' = d/ds T(c(s)) for dc = d/ds c. Computed by T = g^2 (T^-1)^T with g = 1 / (1 + x).
 template <typename V, typename D>
 inline Matrix3T<typename V::Scalar> tangent_derivative(const Eigen::MatrixBase<V>& c, const Eigen::MatrixBase<D>& dc) {
   using S = typename V::Scalar;

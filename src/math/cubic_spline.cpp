@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// The piece of a spline at a time, in the local coordinate s from 0 to 1.
+/// The piece of a spline that contains a time, with the local coordinate s from 0 to 1.
 struct Piece {
   Piece(const CubicSpline& spline, double t) {
     const auto inner_end = spline.times.end() - 1;
@@ -46,8 +46,8 @@ std::vector<double> smoothest_rates(const std::vector<double>& times, const std:
   assert(times.size() >= 2 && values.size() == times.size());
   const std::size_t last = times.size() - 1;
   std::vector<double> rates(times.size(), 0.0), above(times.size(), 0.0);
-  // Rows h_1 r_(i-1) + 2 (h_0 + h_1) r_i + h_0 r_(i+1) = 3 (h_1 d_0 + h_0 d_1), with the slopes d of the chords on
-  // either side: no row needs a pivot.
+  // The equations are h_1 r_(i-1) + 2 (h_0 + h_1) r_i + h_0 r_(i+1) = 3 (h_1 d_0 + h_0 d_1), with the slopes d of the
+  // chords on both sides. The matrix is diagonally dominant, so elimination needs no pivoting.
   for (std::size_t i = 1; i < last; ++i) {
     const double before = times[i] - times[i - 1], after = times[i + 1] - times[i];
     const double slope_before = (values[i] - values[i - 1]) / before, slope_after = (values[i + 1] - values[i]) / after;

@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-/// By the real QR iteration. False if it does not converge.
+/// Finds the pairs by the real QR iteration. Returns false if it does not converge.
 bool find_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
   if (solver.info() != Eigen::Success) return false;
@@ -19,7 +19,7 @@ bool find_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
   return pairs.values.allFinite() && pairs.vectors.allFinite();
 }
 
-/// The same in coordinates whose scales make rows and columns alike.
+/// The same for the balanced matrix, see balanced().
 bool find_balanced_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
   const Balanced balanced = flexarm::balanced(matrix);
   if (!find_pairs(balanced.matrix, pairs)) return false;

@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t kLongestExpression = 2000;  // characters; far above what anyone writes by hand
 constexpr std::size_t kLongestReason = 200;
 
-/// Position of an '=' that assigns: muParser would let an expression change what it names.
+/// Returns the position of an '=' that is an assignment. Assignments are refused, since with them an expression could
+/// change the variables that it uses.
 std::size_t find_assignment(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// Expressions of named numbers, as muParser reads them.
+/// Compiles expressions for muParser.
 
 #include <string>
 #include <string_view>
@@ -8,13 +8,14 @@
 
 namespace flexarm {
 
-/// "'text'", shortened for messages about expressions and tables.
+/// Returns the text in quotes, shortened for messages.
 std::string quoted_expression(std::string_view text);
 
-/// Has `parser`, which knows all names, compile `text`, an expression with one value, so that its evaluation does not
-/// allocate.
-/// @returns its value, which need not be finite
-/// @throws std::invalid_argument that says what is wrong, at which character, and that `expected` was expected.
+/// Compiles `text`, an expression with one value, in `parser`, in which all names must be defined. Later evaluations do
+/// not allocate.
+/// @returns the expression's value, which may not be finite
+/// @throws std::invalid_argument for an invalid expression; the message says what is wrong, at which character, and
+/// that `expected` was expected
 double compile_expression(mu::Parser& parser, const std::string& text, std::string_view expected);
 
 }  // namespace flexarm

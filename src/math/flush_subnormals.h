@@ -1,5 +1,5 @@
 #pragma once
-/// Subnormal numbers as zeros: processors take ten times as long with them.
+/// Makes the processor treat subnormal numbers as zeros, since operations with them take ten times as long.
 
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// While it lives, the thread's subnormal results and operands are zeros. A disturbance that dies out along a long
-/// chain passes through these numbers on its way to zero; no answer depends on them.
+/// During its lifetime, subnormal results and operands of the thread are zeros. A disturbance that decays along a long
+/// chain becomes subnormal on its way to zero. No result depends on such numbers.
 class FlushSubnormals {
  public:
   FlushSubnormals() : before_(control()) { set_control(before_ | kFlush); }
@@ -36,7 +36,7 @@ class FlushSubnormals {
   static void set_control(std::uint64_t value) {
     asm volatile("msr fpcr, %0" : : "r"(value));
   }
-#else  // slower, and as right
+#else  // not supported: slower, but as correct
   static constexpr std::uint64_t kFlush = 0;
   static std::uint64_t control() {
     return 0;

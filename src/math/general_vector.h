@@ -1,5 +1,5 @@
 #pragma once
-/// A vector for what must not meet a special case.
+/// A vector in general position, for example as the start of an iteration or to test ranks.
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// No component is special, nor are any two alike.
+/// Returns a vector without zero or equal components.
 inline Eigen::VectorXd general_vector(Eigen::Index size) {
   Eigen::VectorXd vector(size);
   for (Eigen::Index k = 0; k < size; ++k) vector[k] = std::sin(1.0 + 2.3 * static_cast<double>(k));

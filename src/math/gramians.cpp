@@ -10,12 +10,14 @@
 namespace flexarm {
 namespace {
 
-/// It halves what is far from -1 at worst: 1e-30 of the largest eigenvalue would be reached.
+/// In the worst case, an iteration halves an eigenvalue that is far from -1. So eigenvalues down to 1e-30 of the
+/// largest one would converge.
 constexpr int kMostSteps = 100;
-/// A step shorter than this part, and longer than that part of the one before, is round-off: they shrink as squares.
+/// The iteration has converged if its relative change is below kShort, and above kShorter times the previous change.
+/// This is then round-off, since changes decrease quadratically.
 constexpr double kShort = 1e-3, kShorter = 0.5;
 
-/// F with F^T F = [first; second]^T [first; second] and at most as many rows as columns.
+/// Returns F with F^T F = [first; second]^T [first; second] and at most as many rows as columns.
 Eigen::MatrixXd root_of_sum(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
   Eigen::MatrixXd stacked(first.rows() + second.rows(), first.cols());
   stacked << first, second;
@@ -27,7 +29,7 @@ Eigen::MatrixXd root_of_sum(const Eigen::MatrixXd& first, const Eigen::MatrixXd&
 GramianRoots gramian_roots(Eigen::MatrixXd a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& c) {
   assert(a.rows() == a.cols() && b.rows() == a.rows() && c.cols() == a.cols());
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-  Eigen::MatrixXd reached = b.transpose(), seen = c;  // transposed: both grow by rows
+  Eigen::MatrixXd reached = b.transpose(), seen = c;  // `reached` is transposed here, so that both grow by rows
   double last = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostSteps; ++n) {
     const Eigen::MatrixXd inverse = square_solution(a, identity);

@@ -28,7 +28,8 @@ Balanced balanced(Eigen::MatrixXd matrix) {
   return {std::move(matrix), std::move(scales)};
 }
 
-// By a reflection for each column. Eigen's HessenbergDecomposition does the same, but takes 140 MB more to compile.
+// Uses a Householder reflection for each column. Eigen's HessenbergDecomposition does the same, but needs 140 MB more
+// memory to compile.
 Hessenberg hessenberg(Eigen::MatrixXd matrix) {
   assert(matrix.rows() == matrix.cols());
   const Eigen::Index n = matrix.rows();

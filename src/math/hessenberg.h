@@ -1,6 +1,6 @@
 #pragma once
-/// Square matrices in the form that makes all that is asked of them for many numbers cheap: their eigenvalues, and
-/// systems of equations that differ by a multiple of the identity.
+/// Balancing and the Hessenberg form of square matrices. With these, eigenvalues are accurate, and systems of equations
+/// with many shifts (multiples of the identity) are cheap to solve.
 
 #include <complex>
 
@@ -8,22 +8,22 @@
 
 namespace flexarm {
 
-/// A = S matrix S^-1 with S of powers of two, such that rows and columns are alike (Parlett and Reinsch 1969): results
-/// keep their digits where coordinates have units of very different sizes.
+/// A = S matrix S^-1, with a diagonal S of powers of two such that rows and columns have similar norms (Parlett and
+/// Reinsch 1969). Results are then accurate even if coordinates have units of very different sizes.
 struct Balanced {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd scales;  ///< the diagonal of S
 };
 Balanced balanced(Eigen::MatrixXd matrix);
 
-/// A = Q H Q^T, where H has one diagonal below its main one.
+/// A = Q H Q^T, where H is zero below its first subdiagonal.
 struct Hessenberg {
-  Eigen::MatrixXd reduced, basis;
+  Eigen::MatrixXd reduced, basis;  ///< H, Q
 };
 Hessenberg hessenberg(Eigen::MatrixXd matrix);
 
-/// x of (shift - H) x = rights, in as many operations as H has entries for each column; not finite if the shift is an
-/// eigenvalue.
+/// Solves (shift - H) x = rights for x, with about as many operations per column as H has entries. The result is not
+/// finite if the shift is an eigenvalue of H.
 Eigen::MatrixXcd shifted_solution(const Eigen::MatrixXd& reduced, std::complex<double> shift, Eigen::MatrixXcd rights);
 
 }  // namespace flexarm

@@ -15,7 +15,7 @@ Eigen::MatrixXd invariant_subspace(const Eigen::MatrixXd& matrix,
   const Eigen::ComplexSchur<Eigen::MatrixXcd> schur(matrix.cast<std::complex<double>>());
   if (schur.info() != Eigen::Success) throw std::runtime_error("the eigenvalues are not found");
   Eigen::MatrixXcd triangle = schur.matrixT(), basis = schur.matrixU();
-  // Wanted ones go up along the diagonal, by rotations that exchange neighbours.
+  // Move the wanted eigenvalues to the top of the diagonal, by rotations that exchange neighbours.
   Eigen::Index count = 0;
   for (Eigen::Index i = 0; i < triangle.rows(); ++i) {
     if (!wanted(triangle(i, i))) continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// Kept in a file of its own: Eigen's Schur decomposition takes long to compile.
+/// Invariant subspaces of matrices. In a file of its own, since Eigen's Schur decomposition takes long to compile.
 
 #include <complex>
 #include <functional>
@@ -8,8 +8,8 @@
 
 namespace flexarm {
 
-/// An orthonormal basis of what a matrix maps into itself with the eigenvalues that are `wanted`, and no others. Of a
-/// conjugate pair both or none are to be wanted.
+/// Returns an orthonormal basis of the invariant subspace of a matrix that belongs to the eigenvalues that are
+/// `wanted`. `wanted` must be the same for both eigenvalues of a conjugate pair.
 /// @throws std::runtime_error if the eigenvalues are not found
 Eigen::MatrixXd invariant_subspace(const Eigen::MatrixXd& matrix,
                                    const std::function<bool(std::complex<double>)>& wanted);

@@ -1,5 +1,5 @@
 #pragma once
-/// One lane of a pack or of a matrix of packs; a double has one lane.
+/// Access to single lanes of packs and of matrices of packs. A double counts as one lane.
 
 #include <array>
 #include <cassert>
@@ -35,7 +35,7 @@ auto get_lane(const Eigen::MatrixBase<From>& from, int lane) {
   return value;
 }
 
-/// The four lanes that are named, of the eight of `a` and `b`.
+/// Returns four lanes by their indices: 0 to 3 are the lanes of `a`, 4 to 7 those of `b`.
 template <int i, int j, int k, int l>
 [[gnu::always_inline]] inline Pack shuffled(const Pack::Vector& a, const Pack::Vector& b) {
 #if defined(__clang__) || __GNUC__ >= 12
@@ -45,7 +45,7 @@ template <int i, int j, int k, int l>
 #endif
 }
 
-/// {v[0][k], v[1][k], v[2][k], v[3][k]} for k = 0 ... 3: a transposition.
+/// Transposes four vectors: result k is {a[k], b[k], c[k], d[k]}.
 [[gnu::always_inline]] inline std::array<Pack::Vector, 4> transposed(const Pack::Vector& a, const Pack::Vector& b,
                                                                      const Pack::Vector& c, const Pack::Vector& d) {
   const Pack ab_even = shuffled<0, 4, 2, 6>(a, b), ab_odd = shuffled<1, 5, 3, 7>(a, b),
@@ -56,11 +56,11 @@ template <int i, int j, int k, int l>
           shuffled<2, 3, 6, 7>(ab_odd.values(), cd_odd.values()).values()};
 }
 
-// A typedef: clang does not heed the alignment of an alias by `using`.
+// A typedef, since clang ignores the alignment in an alias by `using`.
 typedef double UnalignedLanes __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
 
-/// targets[lane][i] += values[i][lane] for the first `lanes` lanes, Count consecutive numbers each.
-/// `set`: = in the place of +=.
+/// Does targets[lane][i] += values[i][lane] for the first `lanes` lanes, with Count consecutive numbers each. With
+/// `set`, assigns and does not add.
 template <int Count, bool set = false>
 [[gnu::always_inline]] inline void add_lanes(const Pack* values, int lanes, double* const* targets) {
   assert(lanes >= 0 && lanes <= Pack::kLanes);
@@ -81,7 +81,7 @@ template <int Count, bool set = false>
     for (int i = whole; i < Count; ++i) targets[lane][i] = values[i][lane] + (set ? 0.0 : targets[lane][i]);
 }
 
-/// values[i][lane] = sources[lane][i], Count consecutive numbers each.
+/// Does values[i][lane] = sources[lane][i] for all lanes, with Count consecutive numbers each.
 template <int Count>
 [[gnu::always_inline]] inline void load_lanes(const double* const* sources, Pack* values) {
   constexpr int whole = Count / Pack::kLanes * Pack::kLanes;

@@ -26,7 +26,7 @@ Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::Matr
 }
 
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold) {
-  // Pivoting takes independent columns of the transpose first.
+  // Column pivoting on the transpose puts linearly independent rows first.
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(threshold);
   qr.compute(matrix.transpose());

@@ -1,5 +1,5 @@
 #pragma once
-/// Dense systems of equations, square or not. Kept in a file of its own: Eigen's pivoting factorisations take
+/// Solves dense systems of equations, square or not. In a file of its own, since Eigen's pivoting factorisations take
 /// long to compile.
 
 #include <optional>
@@ -9,25 +9,26 @@
 
 namespace flexarm {
 
-/// x that makes |matrix x - right| least; for a matrix of full column rank.
+/// Returns the x that minimises |matrix x - right|. The matrix must have full column rank.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-/// Of all x that make |matrix x - right| least the smallest; for a matrix of any rank, which is the number of pivots
-/// larger than this part of the largest one (round-off of a matrix of this size, where none is given).
+/// Returns the smallest x of all that minimise |matrix x - right|, for a matrix of any rank. The rank is the number of
+/// pivots larger than `threshold` times the largest one. Without a `threshold`, this is the round-off of a matrix of
+/// this size.
 Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right,
                                        std::optional<double> threshold = {});
 
-/// x of matrix x = rights, for a square matrix; not finite where that is singular.
+/// Solves matrix x = rights for x, for a square matrix. The result is not finite if the matrix is singular.
 Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& rights);
 
-/// Rows of a matrix that are linearly independent, the one with the largest pivot first: those whose pivots are larger
-/// than `threshold`, and than this part of the largest.
+/// Returns the indices of linearly independent rows of a matrix, the one with the largest pivot first. Their pivots are
+/// larger than `threshold` times the largest pivot. Returns none if the largest pivot is at most `threshold`.
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold);
 
-/// An orthonormal basis of the columns of a matrix of this rank.
+/// Returns an orthonormal basis of the column space of a matrix of this rank.
 Eigen::MatrixXd column_space(const Eigen::MatrixXd& matrix, Eigen::Index rank);
 
-/// F, square, with F^T F = tall^T tall, of a matrix that has at least as many rows as columns.
+/// Returns a square F with F^T F = tall^T tall. `tall` must have at least as many rows as columns.
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& tall);
 
 }  // namespace flexarm

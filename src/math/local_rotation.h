@@ -4,11 +4,12 @@
 /// The nodal rotations are measured from a reference rotation that moves with the element, so a superposed rigid
 /// rotation changes no strain and the result does not depend on the path. (Muñoz 2004, eq. 5.6-5.15)
 ///
-/// What is exploited: the thesis writes the local vectors in the reference frame, Theta_i = log(R^T L_i), then turns
-/// every generalised shape function into space by R (.) R^T. Here the vectors themselves are kept in space, theta_i = R
-/// Theta_i = log(L_i R^T); since R T(Theta) R^T = T(R Theta), no matrix needs turning at any point. The reference node
-/// of an odd element has theta = 0, T^-1 = I and takes what the others leave of sum I_g = I; the two reference nodes of
-/// an even element have opposite vectors, hence transposed T^-1.
+/// Differences to the thesis, which save operations: the thesis has local vectors in the reference frame,
+/// Theta_i = log(R^T Lambda_i), and transforms every generalised shape function to world axes by R (.) R^T. Here the
+/// vectors themselves are in world axes, theta_i = R Theta_i = log(Lambda_i R^T). Since R T(Theta) R^T = T(R Theta), no
+/// matrix needs a transformation. If the number of nodes is odd, the reference node has theta = 0 and T^-1 = I, and its
+/// shape function follows from those of the others by sum I_g = I. If it is even, the two reference nodes have opposite
+/// vectors, hence one T^-1 is the transpose of the other.
 
 #include <array>
 #include <cstddef>
@@ -18,7 +19,8 @@
 
 namespace flexarm {
 
-/// The nodes between which the reference rotation lies half-way: the same one twice if there is a middle node.
+/// The two nodes of which the reference rotation is the half-way rotation. If there is a middle node, both are this
+/// node.
 struct ReferenceNodes {
   int first;
   int second;
@@ -32,28 +34,31 @@ constexpr ReferenceNodes reference_nodes() {
 /// Interpolated rotation at a point.
 template <typename S = double>
 struct InterpolatedRotation {
-  Matrix3T<S> rotation;   ///< Lambda, section frame to world
-  Vector3T<S> curvature;  ///< Upsilon = vee(Lambda^T Lambda') in the section frame, ' as in the given derivatives
+  Matrix3T<S> rotation;  ///< Lambda, section frame to world
+  /// Upsilon = vee(Lambda^T Lambda') in the section frame; ' is the derivative with respect to the coordinate of the
+  /// given derivatives of the shape functions.
+  Vector3T<S> curvature;
 };
 
 /// Generalised shape functions at a point: dvartheta = sum_i values[i] dvartheta_i for spatial spins, and
-/// d(Upsilon) = Lambda^T sum_i derivatives[i] dvartheta_i. They sum to I and to 0.
+/// d(Upsilon) = Lambda^T sum_i derivatives[i] dvartheta_i. The values sum to I, the derivatives to 0.
 template <int Nodes, typename S = double>
 struct GeneralisedShapeFunctions {
   std::array<Matrix3T<S>, Nodes> values;
   std::array<Matrix3T<S>, Nodes> derivatives;
 };
 
-/// What one element needs once to interpolate its rotations. Every node must be less than 2 pi away from the reference,
-/// and the two reference nodes of an even element less than 2 pi apart; elements that turn more must be divided.
+/// The interpolation of an element's rotations; its constructor does what is common to all points. The rotation of
+/// every node relative to the reference must be less than 2 pi. If the number of nodes is even, so must be the relative
+/// rotation of the two reference nodes. Elements with larger rotations must be divided.
 template <int Nodes, typename S = double>
 class LocalRotations {
  public:
   static constexpr ReferenceNodes reference = reference_nodes<Nodes>();
   static constexpr bool has_middle_node = reference.first == reference.second;
 
-  /// From unit quaternions, section frame to world. One of opposite sign is a turn further: signs tell rotations beyond
-  /// pi from those the other way round.
+  /// `rotations`: unit quaternions, section frame to world. Their signs matter: a quaternion of opposite sign means one
+  /// turn more, so relative rotations may be larger than pi.
   explicit LocalRotations(const std::array<QuaternionT<S>, Nodes>& rotations) {
     QuaternionT<S> middle = rotations[reference.first];
     quarter_tangent_.setZero();
@@ -68,12 +73,12 @@ class LocalRotations {
     reference_rotation_ = middle.toRotationMatrix();
   }
 
-  /// From rotation matrices, section frame to world, of nodes that are less than pi apart from one to the next.
+  /// `rotations`: matrices, section frame to world. The rotation from one node to the next must be less than pi.
   explicit LocalRotations(const std::array<Matrix3T<S>, Nodes>& rotations) : LocalRotations(quaternions(rotations)) {}
 
-  /// R, the frame from which the local rotations are measured.
+  /// R, the reference rotation.
   const Matrix3T<S>& reference_rotation() const { return reference_rotation_; }
-  /// theta_i = log(Lambda_i R^T), in space. [rad]
+  /// theta_i = log(Lambda_i R^T), world axes. [rad]
   const std::array<Vector3T<S>, Nodes>& rotation_vectors() const { return local_; }
   /// tan(|theta_ab|/4) theta_ab/|theta_ab|, theta_ab = log(Lambda_b Lambda_a^T); zero if there is a middle node.
   const Vector3T<S>& quarter_tangent() const { return quarter_tangent_; }
@@ -86,7 +91,7 @@ class LocalRotations {
     return sum;
   }
 
-  /// Rotation and curvature only, given the shape functions and their derivatives (with respect to any coordinate).
+  /// Returns rotation and curvature, given the shape functions and their derivatives (with respect to any coordinate).
   template <typename W>
   InterpolatedRotation<S> evaluate(const NodalValues<Nodes, W>& shape,
                                    const NodalValues<Nodes, W>& shape_derivative) const {
@@ -106,8 +111,9 @@ class LocalRotations {
     return to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
   }
 
-  /// Local vectors of the reference pair; returns the rotation half-way. Half the rotation of a quaternion q is
-  /// q + 1 normalised, and the tangent of a quarter of its angle is q_v / (q_0 + 1): no trigonometry.
+  /// Sets the local vectors of the reference pair, and returns the half-way rotation. Half the rotation of a quaternion
+  /// q is q + 1, normalised, and the tangent of a quarter of its angle is q_v / (q_0 + 1), so no trigonometry is
+  /// needed.
   QuaternionT<S> set_reference_pair(const QuaternionT<S>& first, const QuaternionT<S>& second) {
     using std::sqrt;
     QuaternionT<S> q = relative(second, first);
@@ -131,7 +137,7 @@ class LocalRotations {
   Vector3T<S> quarter_tangent_;
 };
 
-/// What one element needs once, on top of its local rotations, to vary the interpolation.
+/// The variation of an element's interpolation; its constructor does what is common to all points.
 template <int Nodes, typename S = double>
 class LocalRotationVariation {
  public:
@@ -148,7 +154,8 @@ class LocalRotationVariation {
 
   const LocalRotations<Nodes, S>& local_rotations() const { return local_; }
 
-  /// Rotation, curvature and generalised shape functions I_g, I_g', given the shape functions and their derivatives.
+  /// Returns rotation and curvature, and sets the generalised shape functions I_g, I_g', given the shape functions and
+  /// their derivatives.
   template <typename W>
   InterpolatedRotation<S> evaluate(const NodalValues<Nodes, W>& shape, const NodalValues<Nodes, W>& shape_derivative,
                                    GeneralisedShapeFunctions<Nodes, S>& generalised) const {
@@ -156,7 +163,7 @@ class LocalRotationVariation {
     const Vector3T<S> derivative = local_.interpolate(shape_derivative);
     const Matrix3T<S> tangent = map.tangent();
     const Matrix3T<S> tangent_derivative = map.tangent_derivative(derivative);
-    // What the nodes' own terms T I^i T_i^-1 leave of sum I_g = I follows the reference frame.
+    // The terms T I^i T_i^-1 of the nodes do not sum to I. The rest is the spin of the reference frame.
     Matrix3T<S> rest = Matrix3T<S>::Identity(), rest_derivative = Matrix3T<S>::Zero();
     for (int i = 0; i < Nodes; ++i) {
       if (first == second && i == first) continue;
@@ -191,8 +198,9 @@ class LocalRotationVariation {
   std::array<Matrix3T<S>, Nodes> inverse_tangents_;
 };
 
-/// Half-way between the nodes of an element of two, where the local vector is zero: the frame is the reference.
-/// `slope`: of the second node's shape function. (docs/notes/beam.md 2.4)
+/// Returns rotation and curvature half-way between the nodes of an element of two nodes. The local vector is zero
+/// there, so the rotation is the reference rotation. `slope`: derivative of the second node's shape function.
+/// (docs/notes/beam.md 2.4)
 template <typename S>
 InterpolatedRotation<S> evaluate_half_way(const LocalRotations<2, S>& local, const S& slope) {
   InterpolatedRotation<S> result;
@@ -201,8 +209,8 @@ InterpolatedRotation<S> evaluate_half_way(const LocalRotations<2, S>& local, con
   return result;
 }
 
-/// The same with generalised shape functions: values are the spin of the reference, derivatives are plus and minus one
-/// symmetric matrix, slope (e e^T + theta/sin(theta) (I - e e^T)).
+/// The same, and sets the generalised shape functions. The values give the spin of the reference rotation; the
+/// derivatives are plus and minus the symmetric matrix slope (e e^T + theta/sin(theta) (I - e e^T)).
 template <typename S>
 InterpolatedRotation<S> evaluate_half_way(const LocalRotations<2, S>& local, const S& slope,
                                           GeneralisedShapeFunctions<2, S>& generalised) {

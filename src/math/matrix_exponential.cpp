@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// Of the series, where the norm is at most 1/2: the next term is below 1e-19 of the first.
+/// Number of terms of the series. For a norm of at most 1/2, the next term is below 1e-19 of the first.
 constexpr int kTerms = 15;
 
 }  // namespace

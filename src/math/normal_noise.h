@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// A sequence of independent numbers of mean 0 and standard deviation 1, by Box's and Muller's transform:
-/// std::normal_distribution is another one in each library. Allocates nothing.
+/// A sequence of independent numbers with mean 0 and standard deviation 1, by the Box-Muller transform. It replaces
+/// std::normal_distribution, which differs between standard libraries. Does not allocate.
 class NormalNoise {
  public:
   explicit NormalNoise(std::uint64_t seed) : engine_(mixed(seed)) {}
@@ -20,7 +20,7 @@ class NormalNoise {
     return radius * std::cos(angle);
   }
 
-  /// Seeds that follow each other give ones that have nothing in common (the finaliser of SplitMix64).
+  /// Returns a seed for the engine. Consecutive seeds give unrelated ones (the finaliser of SplitMix64).
   static std::uint64_t mixed(std::uint64_t seed) {
     seed += 0x9e3779b97f4a7c15u;
     seed = (seed ^ (seed >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -29,7 +29,7 @@ class NormalNoise {
   }
 
  private:
-  /// In (0, 1): the middle of one of 2^53 intervals.
+  /// Returns a uniformly distributed number in (0, 1): the middle of one of 2^53 intervals.
   double uniform() { return std::ldexp(static_cast<double>(engine_() >> 11) + 0.5, -53); }
 
   std::mt19937_64 engine_;

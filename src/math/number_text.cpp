@@ -3,7 +3,8 @@
 #include <charconv>
 #include <cmath>
 
-// GCC has them for numbers of type double from version 11 on. Before it, what C has goes through the locale.
+// GCC has std::from_chars and std::to_chars for double from version 11 on. Before, C functions are used, which depend
+// on the locale.
 #ifndef __cpp_lib_to_chars
 #include <locale.h>
 #include <stdio.h>
@@ -37,7 +38,7 @@ locale_t plain_locale() {
 
 std::optional<double> parse(std::string_view text, bool is_hexadecimal) {
   const std::size_t digits = !text.empty() && text[0] == '-';
-  // What C's function takes beyond numbers: white space, other signs, "0x", and names, whose letters are no digits.
+  // strtod() accepts more than parse_number() should: white space, a sign '+', "0x", and names such as "inf".
   const char* allowed = is_hexadecimal ? "0123456789abcdefABCDEF.pP+-" : "0123456789.eE+-";
   if (digits == text.size() || text[digits] == '+' || text[digits] == '-' ||
       text.find_first_not_of(allowed) != std::string_view::npos)
@@ -52,7 +53,8 @@ std::optional<double> parse(std::string_view text, bool is_hexadecimal) {
   return value;
 }
 
-/// The shortest that is read back as the same number, without an exponent if both are as short.
+/// Returns the shortest text that is read back as the same number. If texts with and without exponent have the same
+/// length, returns the one without.
 std::string shortest(double value) {
   std::string best(kLongestNumber, ' ');
   for (int digits = 1; digits <= 17; ++digits) {

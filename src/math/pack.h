@@ -1,9 +1,9 @@
 #pragma once
-/// Four numbers of type double that go through the same operations side by side: one SIMD register with AVX, two of
-/// SSE2. A scalar for the templates on one (Eigen's too): a kernel written once runs for one element or for four.
+/// A pack of four numbers of type double (lanes) for SIMD: one register with AVX, two with SSE2. A pack can be the
+/// scalar type of templates, including Eigen's, so that a kernel that is written once runs for one element or for four.
 ///
-/// Lanes never mix: what a lane gives does not depend on its place or on its neighbours. Branches become
-/// sign_of(), or for_lanes_beyond() where the far branch is rare.
+/// Lanes never mix: the result in a lane does not depend on its position or on the other lanes. Code for packs cannot
+/// branch on values. It uses sign_of(), or for_lanes_beyond() for a rare branch.
 
 #include <cmath>
 #include <type_traits>
@@ -12,7 +12,8 @@
 
 namespace flexarm {
 
-class alignas(4 * sizeof(double)) Pack {  // compilers align vectors wider than their registers as they like
+// The alignment is explicit, since compilers choose different ones for vectors wider than registers.
+class alignas(4 * sizeof(double)) Pack {
  public:
   static constexpr int kLanes = 4;
   using Vector = double __attribute__((vector_size(kLanes * sizeof(double))));
@@ -22,7 +23,7 @@ class alignas(4 * sizeof(double)) Pack {  // compilers align vectors wider than 
   [[gnu::always_inline]] Pack(double value) : values_(Vector{} + value) {}
   [[gnu::always_inline]] Pack(double a, double b, double c, double d) : values_{a, b, c, d} {}
   [[gnu::always_inline]] explicit Pack(const Vector& values) : values_(values) {}
-  // Not trivial, which makes calls pass packs by address: by value they would go other ways with AVX than without.
+  // A non-trivial copy makes calls pass packs by address. The calling convention by value depends on AVX.
   [[gnu::always_inline]] Pack(const Pack& other) : values_(other.values_) {}
   [[gnu::always_inline]] Pack& operator=(const Pack& other) {
     values_ = other.values_;
@@ -69,7 +70,7 @@ class alignas(4 * sizeof(double)) Pack {  // compilers align vectors wider than 
 template <typename S>
 inline constexpr bool is_pack = std::is_same_v<S, Pack>;
 
-/// -1 where the (real part of the) number is negative, else 1.
+/// Returns -1 if the (real part of the) number is negative, else 1; for each lane of a pack.
 template <typename S>
 [[gnu::always_inline]] inline auto sign_of(const S& x) {
   if constexpr (is_pack<S>) {
@@ -80,7 +81,7 @@ template <typename S>
   }
 }
 
-/// Calls far(lane) for the lanes where not x < limit (that holds for NaN, too).
+/// Calls far(lane) for the lanes in which x < limit is false, which includes NaN.
 template <class Far>
 [[gnu::always_inline]] inline void for_lanes_beyond(const Pack& x, const Pack& limit, const Far& far) {
   const Pack::Mask near = x.values() < limit.values();
@@ -112,7 +113,7 @@ struct NumTraits<flexarm::Pack> : GenericNumTraits<double> {
 
 namespace internal {
 
-// A pack aligns itself; Eigen would ask for 16 bytes, which is less and refused by clang.
+// Pack has an alignment of its own. Eigen would request 16 bytes, which is less, and an error in clang.
 template <int Size>
 struct compute_default_alignment<flexarm::Pack, Size> {
   enum { value = 0 };

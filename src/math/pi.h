@@ -1,5 +1,5 @@
 #pragma once
-/// The circle constant.
+/// The constant pi.
 
 namespace flexarm {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Rows, columns and parts of matrices by lists of places, as Eigen has them itself from version 3.4 on.
+/// Selects rows, columns and parts of matrices by lists of indices. Eigen itself can do this from version 3.4 on.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// out.row(k) = matrix.row(rows[k]). Of a vector: entries.
+/// Returns out with out.row(k) = matrix.row(rows[k]). For a column vector, selects entries.
 template <class Matrix, class Place>
 auto picked_rows(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& rows) {
   Eigen::Matrix<typename Matrix::Scalar, Eigen::Dynamic, Matrix::ColsAtCompileTime> out(rows.size(), matrix.cols());
@@ -15,7 +15,7 @@ auto picked_rows(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Plac
   return out;
 }
 
-/// out.col(k) = matrix.col(columns[k]). Of a row vector: entries.
+/// Returns out with out.col(k) = matrix.col(columns[k]). For a row vector, selects entries.
 template <class Matrix, class Place>
 auto picked_columns(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& columns) {
   Eigen::Matrix<typename Matrix::Scalar, Matrix::RowsAtCompileTime, Eigen::Dynamic> out(matrix.rows(), columns.size());
@@ -23,14 +23,14 @@ auto picked_columns(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<P
   return out;
 }
 
-/// out(i, k) = matrix(rows[i], columns[k]).
+/// Returns out with out(i, k) = matrix(rows[i], columns[k]).
 template <class Matrix, class Place>
 auto picked(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& rows,
             const std::vector<Place>& columns) {
   return picked_columns(picked_rows(matrix, rows), columns);
 }
 
-/// to.row(rows[k]) += what.row(k).
+/// Does to.row(rows[k]) += what.row(k) for all k.
 template <class To, class What, class Place>
 void add_to_rows(Eigen::MatrixBase<To>& to, const std::vector<Place>& rows, const Eigen::MatrixBase<What>& what) {
   for (std::size_t k = 0; k < rows.size(); ++k) to.row(rows[k]) += what.row(k);

@@ -1,9 +1,9 @@
 #pragma once
-/// Interpolation of rotation vectors that nodes and points measure from a reference of their own: Lambda = exp(theta)
-/// Lambda_ref with theta = sum I^i theta_i. Which reference makes the difference between the thesis's global
-/// interpolations: the undeformed state (total), the last step (incremental), the last iterate (iterative); with
-/// tangent-scaled vectors and the last step, that of Simo, Tarnow and Doblaré. None is strain-invariant.
-/// (Muñoz 2004, sec. 5.2; eq. 5.5, E.3, E.9)
+/// Interpolation of rotation vectors relative to references: Lambda = exp(theta) Lambda_ref with theta = sum I^i
+/// theta_i, where each node and each point has its own reference rotation. The global interpolations of the thesis
+/// differ in the reference: the undeformed state (total), the last step (incremental), or the last iterate (iterative).
+/// With tangent-scaled vectors and the last step, it is the interpolation of Simo, Tarnow and Doblaré. None of these is
+/// strain-invariant. (Muñoz 2004, sec. 5.2; eq. 5.5, E.3, E.9)
 
 #include "math/cayley.h"
 #include "math/local_rotation.h"
@@ -15,15 +15,16 @@ enum class RotationParameters { Unscaled, TangentScaled };
 template <int Nodes, typename S = double>
 class ReferencedRotations {
  public:
-  /// `vectors`: spatial rotation vectors (or tangent-scaled ones) from the nodes' references.
+  /// `vectors`: spatial rotation vectors of the nodes relative to their references; tangent-scaled if `parameters` says
+  /// so.
   ReferencedRotations(RotationParameters parameters, const std::array<Vector3T<S>, Nodes>& vectors)
       : parameters_(parameters), vectors_(vectors) {
     for (int i = 0; i < Nodes; ++i)
       inverse_tangents_[i] = is_scaled() ? cayley::inverse_tangent(vectors[i]) : so3::inverse_tangent(vectors[i]);
   }
 
-  /// `reference`: rotation and curvature of the point's reference; the derivatives are with respect to the same
-  /// coordinate as its curvature.
+  /// Returns rotation and curvature at a point, and sets the generalised shape functions. `reference`: rotation and
+  /// curvature of the point's reference. `derivative` must be with respect to the same coordinate as that curvature.
   InterpolatedRotation<S> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
                                    const InterpolatedRotation<S>& reference,
                                    GeneralisedShapeFunctions<Nodes, S>& generalised) const {

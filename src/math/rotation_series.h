@@ -1,6 +1,6 @@
 #pragma once
-/// The scalar functions of an angle that rotations need, free of 0/0: templates on the scalar, a Pack too, of which
-/// lanes with rare, large angles go one by one.
+/// Scalar functions of an angle for finite rotations, such as sin(theta)/theta, without 0/0. They are templates on the
+/// scalar type. For a Pack, lanes with large angles, which are rare, are computed one by one.
 
 #include <array>
 #include <cmath>
@@ -30,8 +30,8 @@ inline constexpr std::array<long double, 41> reciprocal_factorials = [] {
 template <typename S>
 inline constexpr int extra_terms = std::numeric_limits<RealOf<S>>::digits > 53 ? 2 : 0;
 
-/// sum_i c_i x^i by Estrin's scheme: pairs of terms, then pairs of pairs in x^2, ... Horner's form has each operation
-/// wait for the last one, which takes twice to three times as long.
+/// Returns sum_i c_i x^i by Estrin's scheme: pairs of terms, then pairs of pairs in x^2, and so on. In Horner's scheme,
+/// each operation waits for the previous one, which takes two to three times as long.
 template <std::size_t terms, typename C, typename S>
 [[gnu::always_inline]] inline S polynomial(const std::array<C, terms>& c, const S& x) {
   if constexpr (terms == 1) {
@@ -45,7 +45,7 @@ template <std::size_t terms, typename C, typename S>
   }
 }
 
-/// a_k by its power series in x = theta^2.
+/// Returns a_k, see series_coefficients(), by its power series in x = theta^2.
 template <int k, int terms, typename S>
 [[gnu::always_inline]] inline S power_series(const S& x) {
   using Real = RealOf<S>;
@@ -71,7 +71,7 @@ template <typename S>
   return polynomial(coefficients, x);
 }
 
-/// arctan(sqrt(x)) / sqrt(x) for x >= 0; a series where the quotient is 0/0 or slow.
+/// arctan(sqrt(x)) / sqrt(x) for x >= 0. For small x uses a series, which is faster and has no 0/0.
 template <typename S>
 [[gnu::always_inline]] inline S arctangent_ratio(const S& x) {
   using std::atan;
@@ -95,7 +95,7 @@ template <typename S>
   return (pi - Real(2) * atan(q0 / sine)) / sine;
 }
 
-/// Kept out of line: what few lanes of a pack need.
+/// angle_per_sine() for single lanes of a pack with large angles. Not inlined, since it is rarely called.
 [[gnu::noinline, gnu::cold]] inline double far_angle_per_sine(double q0, double square) {
   return angle_per_sine(q0, square);
 }
@@ -112,10 +112,11 @@ std::array<double, kmax + 1> far_series_coefficients(double theta_squared);
 
 }  // namespace detail
 
-/// a_0 .. a_kmax with a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!: a_0 = sin(theta)/theta,
-/// a_1 = (1-cos(theta))/theta^2, a_2 = (theta-sin(theta))/theta^3, ..., to round-off for 0 <= theta^2 <= (2 pi)^2.
-/// Below theta = 2 the two highest are summed and the others follow downwards, a_{k-2} = 1/(k-1)! - theta^2 a_k, which
-/// damps errors; above, the recurrence is stable upwards. Closed forms in the half angle keep a_1 accurate at 2 pi.
+/// a_0 .. a_kmax with a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!: a_0 = sin(theta)/theta, a_1 =
+/// (1-cos(theta))/theta^2, a_2 = (theta-sin(theta))/theta^3, ..., to round-off for 0 <= theta^2 <= (2 pi)^2. Below
+/// theta = 2, power series give the two highest, and the others follow by the recurrence a_{k-2} = 1/(k-1)! - theta^2
+/// a_k, which damps errors in this direction. Above, closed forms give a_0 and a_1, and the recurrence is stable in the
+/// other direction. Closed forms in the half angle keep a_1 accurate at 2 pi.
 /// @note 1 / theta d(a_k)/d(theta) = (k+1) a_{k+2} - a_{k+1}.
 template <int kmax, typename S>
 [[gnu::always_inline]] inline std::array<S, kmax + 1> series_coefficients(const S& theta_squared) {
@@ -159,7 +160,7 @@ template <int kmax, typename S>
   return a;
 }
 
-/// Kept out of line: what few lanes of a pack need.
+/// series_coefficients() for single lanes of a pack with large angles. Not inlined, since it is rarely called.
 template <int kmax>
 [[gnu::noinline, gnu::cold]] std::array<double, kmax + 1> detail::far_series_coefficients(double theta_squared) {
   return series_coefficients<kmax>(theta_squared);

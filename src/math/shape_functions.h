@@ -1,9 +1,9 @@
 #pragma once
 /// Lagrange shape functions on the Gauss-Lobatto points of the parent interval [-1, 1].
 ///
-/// With nodes there, the interpolation error of a smooth curve is orthogonal to polynomials of degree order - 2. That
-/// keeps the order 2 (Nodes - 1) of end values on curved centrelines too; equally spaced nodes lose it from four nodes
-/// on (order 4 instead of 6: the error of Simpson's 3/8 rule).
+/// With these nodes, the interpolation error of a smooth curve is orthogonal to polynomials of degree order - 2
+/// (order = Nodes - 1). So the order of convergence 2 (Nodes - 1) of end values also holds for curved centrelines. With
+/// equally spaced nodes it does not hold from four nodes on (4 instead of 6, from the error of Simpson's 3/8 rule).
 
 #include <Eigen/Core>
 
@@ -13,7 +13,7 @@ namespace flexarm {
 template <int Nodes, typename S = double>
 using NodalValues = Eigen::Matrix<S, Nodes, 1>;
 
-/// Shape functions and their derivatives at one point. [-], and per unit of whatever coordinate they were scaled to.
+/// Shape functions at one point [-], and their derivatives, per unit of the coordinate to which they are scaled.
 template <int Nodes>
 struct ShapeFunctions {
   NodalValues<Nodes> values;
@@ -40,7 +40,7 @@ template <int Nodes>
 ShapeFunctions<Nodes> lagrange(double xi) {
   ShapeFunctions<Nodes> result;
   for (int i = 0; i < Nodes; ++i) {
-    // Product rule, one factor (xi - xi_k) / (xi_i - xi_k) after the other.
+    // Product rule for the factors (xi - xi_k) / (xi_i - xi_k), one after the other.
     double value = 1.0, derivative = 0.0;
     for (int k = 0; k < Nodes; ++k) {
       if (k == i) continue;

@@ -1,21 +1,21 @@
 #pragma once
-/// Runs loops over packs, and other long kernels, with AVX2 and fused multiply-add where the processor at hand has
-/// them. Results differ between processors with and without by round-off. The 32 registers of AVX-512 are not used:
-/// whole runs of four scenes took 0.98 to 1.05 of their time without them (docs/architecture.md).
+/// Runs loops over packs, and other long kernels, with AVX2 and fused multiply-add if the processor has them. Results
+/// on processors with and without these differ by round-off. The 32 registers of AVX-512 are not used: with them, whole
+/// runs of four scenes took 0.98 to 1.05 of the time without them (docs/architecture.md).
 
 namespace flexarm::simd {
 
-/// For which processors a kernel is compiled: all, and those with AVX2 and fused multiply-add.
+/// The versions of a compiled kernel: for all processors, and for those with AVX2 and fused multiply-add.
 enum class Version { Baseline, Wide };
 
-/// The last of them that the processor at hand can run.
+/// Returns the best version that the processor can run.
 Version best_version();
-/// The one that runs: the best, or before it for tests. No other thread may run kernels while it is set.
+/// The version in use: the best one, unless a test sets another. While it is set, no other thread may run kernels.
 extern Version version;
 
-// What a function template inlines is compiled for the same processor as the template, and nothing else is: no inline
-// function that other files share can come out for a processor that they do not run on. GCC only: clang's `flatten`
-// inlines one level of calls. Without optimisation nothing is inlined.
+// run_wide() inlines everything that it calls, and only this inlined code is compiled for AVX2. So no inline function
+// that other files share is compiled for a processor on which these could not run. This works only with GCC, since
+// clang's `flatten` inlines only one level of calls, and only with optimisation, since nothing is inlined without.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 inline constexpr bool has_versions = true;
 template <class Work>
@@ -35,7 +35,7 @@ template <class Work>
   work();
 }
 
-/// Calls work(), a function object that may be compiled twice.
+/// Calls work() in the version in use. `work` is a function object, which is compiled once for each version.
 template <class Work>
 void run(const Work& work) {
   if constexpr (has_versions) {

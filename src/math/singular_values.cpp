@@ -5,7 +5,7 @@
 namespace flexarm {
 
 SingularValues singular_values(const Eigen::MatrixXd& matrix) {
-  // Rotations keep the digits of small ones, too.
+  // Jacobi rotations are also accurate for small singular values.
   const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return {decomposition.singularValues(), decomposition.matrixU(), decomposition.matrixV()};
 }

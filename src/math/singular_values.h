@@ -1,5 +1,5 @@
 #pragma once
-/// Kept in a file of its own: Eigen's takes long to compile.
+/// Singular value decompositions. In a file of its own, since Eigen's takes long to compile.
 
 #include <Eigen/Core>
 
@@ -7,7 +7,7 @@ namespace flexarm {
 
 /// matrix = left diag(values) right^T.
 struct SingularValues {
-  Eigen::VectorXd values;  ///< the largest first
+  Eigen::VectorXd values;  ///< in decreasing order
   Eigen::MatrixXd left, right;
 };
 SingularValues singular_values(const Eigen::MatrixXd& matrix);

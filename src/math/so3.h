@@ -2,9 +2,9 @@
 /// Finite rotations by rotation vectors: exponential, logarithm, tangent operators and their derivatives.
 ///
 /// Conventions: spatial spin, d(exp theta) = hat(dvartheta) exp theta with dvartheta = T(theta) dtheta. Angles in rad.
-/// Everything is a template on the scalar, so that tests run it in long double and with complex steps: products are
-/// bilinear (never conjugating) and branches look at real parts only. What elements call runs on a Pack, too. Nothing
-/// allocates or throws; non-finite input gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
+/// Everything is a template on the scalar type, so that tests can use long double and complex steps. Therefore products
+/// are bilinear (without conjugation), and branches depend on real parts only. The functions that elements call also
+/// work for a Pack. Nothing allocates or throws; non-finite input gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
 
 #include <Eigen/Geometry>
 
@@ -64,12 +64,12 @@ template <typename S>
   return result;
 }
 
-/// hat(w) + c (hat(d) hat(v) + hat(v) hat(d)) + e hat(v)^2: the form of every derivative of identity_plus.
+/// hat(w) + c (hat(d) hat(v) + hat(v) hat(d)) + e hat(v)^2. All derivatives of identity_plus() have this form.
 template <typename S>
 [[gnu::always_inline]] inline Matrix3T<S> identity_plus_derivative(const Vector3T<S>& w, const S& c, const S& e,
                                                                    const Vector3T<S>& v, const Vector3T<S>& d) {
-  // hat(a) hat(v) + hat(v) hat(a) = a v^T + v a^T - 2 (a.v) I, and hat(v)^2 is half of it for a = v: one vector u
-  // serves.
+  // hat(a) hat(v) + hat(v) hat(a) = a v^T + v a^T - 2 (a.v) I, and hat(v)^2 is half of this for a = v. So both terms
+  // together have this form with one vector a = u.
   const Vector3T<S> u = c * d + (S(0.5) * e) * v;
   Matrix3T<S> result = u * v.transpose();
   result += Matrix3T<S>(result.transpose());
@@ -80,8 +80,8 @@ template <typename S>
 
 }  // namespace detail
 
-/// All operators of one rotation vector theta from a single evaluation of the coefficients.
-/// Keep one of these where several of exp, T, T^-1 and their derivatives are needed at the same theta.
+/// All operators of one rotation vector theta, from a single evaluation of the coefficients. Use one object if several
+/// of exp, T, T^-1 and their derivatives are needed at the same theta.
 /// @note T is singular at |theta| = 2 pi; T^-1 and its derivatives need |theta| < 2 pi.
 template <typename S>
 class ExponentialMap {
@@ -165,7 +165,7 @@ ExponentialMap(const Eigen::MatrixBase<V>&) -> ExponentialMap<typename V::Scalar
 /// Rotation matrix of a rotation vector, any |theta|.
 template <typename V>
 inline Matrix3T<typename V::Scalar> exp(const Eigen::MatrixBase<V>& theta) {
-  return ExponentialMap(theta).rotation();
+  return ExponentialMap<typename V::Scalar>(theta).rotation();
 }
 
 /// Unit quaternion (cos(theta/2), sin(theta/2) theta/|theta|) of a rotation vector; q0 >= 0 only for |theta| <= pi.
@@ -178,7 +178,7 @@ inline QuaternionT<typename V::Scalar> exp_quaternion(const Eigen::MatrixBase<V>
   return QuaternionT<S>(S(1) - x * a[1], a[0] * half[0], a[0] * half[1], a[0] * half[2]);
 }
 
-/// Unit quaternion with q0 >= 0 of a rotation matrix, by Spurrier's choice of the largest pivot.
+/// Unit quaternion with q0 >= 0 of a rotation matrix, by Spurrier's algorithm, which chooses the largest pivot.
 template <typename M>
 inline QuaternionT<typename M::Scalar> quaternion_from_matrix(const Eigen::MatrixBase<M>& rotation) {
   using std::sqrt;
@@ -206,15 +206,15 @@ inline QuaternionT<typename M::Scalar> quaternion_from_matrix(const Eigen::Matri
   return QuaternionT<S>(sign * q0, sign * q[0], sign * q[1], sign * q[2]);
 }
 
-/// q or -q, which are the same rotation: the one less than pi away from another quaternion.
+/// Returns q or -q, which are the same rotation: the one whose rotation relative to `other` is less than pi.
 template <typename S>
 inline QuaternionT<S> nearer_of_two(const QuaternionT<S>& q, const QuaternionT<S>& other) {
   const auto sign = sign_of(q.w() * other.w() + q.x() * other.x() + q.y() * other.y() + q.z() * other.z());
   return QuaternionT<S>(sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z());
 }
 
-/// Rotation vector, |theta| <= pi, of a quaternion; accurate from 0 through pi. q and -q give the same result (up to
-/// the sign of theta at exactly pi), and so does any multiple of q: normalisation errors do not matter.
+/// Rotation vector, |theta| <= pi, of a quaternion; accurate from 0 to pi. q and -q give the same result (up to the
+/// sign of theta at exactly pi), and so does any multiple of q, so normalisation errors do not matter.
 template <typename Q>
 inline Vector3T<typename Q::Scalar> log(const Eigen::QuaternionBase<Q>& quaternion) {
   using S = typename Q::Scalar;
@@ -225,8 +225,8 @@ inline Vector3T<typename Q::Scalar> log(const Eigen::QuaternionBase<Q>& quaterni
   return detail::angle_per_sine(q0, square) * q;
 }
 
-/// The rotation vector, |theta| < 2 pi, that a quaternion grows to from 1: beyond pi where q0 < 0. Of any multiple > 0
-/// of it.
+/// Rotation vector, |theta| < 2 pi, of a quaternion, by continuation from the identity: |theta| > pi if q0 < 0.
+/// Positive multiples of the quaternion give the same result.
 template <typename Q>
 inline Vector3T<typename Q::Scalar> unfolded_log(const Eigen::QuaternionBase<Q>& quaternion) {
   using S = typename Q::Scalar;
@@ -234,7 +234,7 @@ inline Vector3T<typename Q::Scalar> unfolded_log(const Eigen::QuaternionBase<Q>&
   return detail::angle_per_sine(S(quaternion.w()), S(dot(q, q))) * q;
 }
 
-/// Rotation vector, |theta| <= pi, of a rotation matrix; accurate from 0 through pi.
+/// Rotation vector, |theta| <= pi, of a rotation matrix; accurate from 0 to pi.
 template <typename M>
 inline Vector3T<typename M::Scalar> log(const Eigen::MatrixBase<M>& rotation) {
   return so3::log(quaternion_from_matrix(rotation));
@@ -249,35 +249,35 @@ inline Vector3T<typename V::Scalar> compound(const Eigen::MatrixBase<V>& theta2,
 /// Single operators; see the members of ExponentialMap of the same name.
 template <typename V>
 inline Matrix3T<typename V::Scalar> tangent(const Eigen::MatrixBase<V>& theta) {
-  return ExponentialMap(theta).tangent();
+  return ExponentialMap<typename V::Scalar>(theta).tangent();
 }
 template <typename V>
 inline Matrix3T<typename V::Scalar> inverse_tangent(const Eigen::MatrixBase<V>& theta) {
-  return ExponentialMap(theta).inverse_tangent();
+  return ExponentialMap<typename V::Scalar>(theta).inverse_tangent();
 }
 template <typename V, typename D>
 inline Matrix3T<typename V::Scalar> tangent_derivative(const Eigen::MatrixBase<V>& theta,
                                                        const Eigen::MatrixBase<D>& dtheta) {
-  return ExponentialMap(theta).tangent_derivative(dtheta);
+  return ExponentialMap<typename V::Scalar>(theta).tangent_derivative(dtheta);
 }
 template <typename V, typename D>
 inline Matrix3T<typename V::Scalar> inverse_tangent_derivative(const Eigen::MatrixBase<V>& theta,
                                                                const Eigen::MatrixBase<D>& dtheta) {
-  return ExponentialMap(theta).inverse_tangent_derivative(dtheta);
+  return ExponentialMap<typename V::Scalar>(theta).inverse_tangent_derivative(dtheta);
 }
 template <typename V, typename A>
 inline Matrix3T<typename V::Scalar> xi_tangent(const Eigen::MatrixBase<V>& theta, const Eigen::MatrixBase<A>& a) {
-  return ExponentialMap(theta).xi_tangent(a);
+  return ExponentialMap<typename V::Scalar>(theta).xi_tangent(a);
 }
 template <typename V, typename A>
 inline Matrix3T<typename V::Scalar> xi_tangent_transposed(const Eigen::MatrixBase<V>& theta,
                                                           const Eigen::MatrixBase<A>& a) {
-  return ExponentialMap(theta).xi_tangent_transposed(a);
+  return ExponentialMap<typename V::Scalar>(theta).xi_tangent_transposed(a);
 }
 template <typename V, typename A>
 inline Matrix3T<typename V::Scalar> xi_inverse_tangent(const Eigen::MatrixBase<V>& theta,
                                                        const Eigen::MatrixBase<A>& a) {
-  return ExponentialMap(theta).xi_inverse_tangent(a);
+  return ExponentialMap<typename V::Scalar>(theta).xi_inverse_tangent(a);
 }
 
 /// Symmetric Hessian with respect to theta of M . (T(theta)^T dtheta), M and dtheta constant.
@@ -293,7 +293,7 @@ inline Matrix3T<typename V::Scalar> xi_second_tangent(const Eigen::MatrixBase<V>
   std::array<S, 5> rate;  // a_k^* = (1/theta) d(a_k)/d(theta)
   for (int k = 0; k < 5; ++k) rate[k] = S(k + 1) * a[k + 2] - a[k + 1];
   const S rate1_rate = S(2) * rate[3] - rate[2], rate2_rate = S(3) * rate[4] - rate[3];
-  // The function is m.dtheta + a_1 p + a_2 q, p and q being polynomials of theta with gradients w and grad_q.
+  // The function is m.dtheta + a_1 p + a_2 q, with polynomials p and q of theta, whose gradients are w and grad_q.
   const Vector w = cross(m, dtheta);
   const S p = dot(t, w);
   const S md = dot(m, dtheta), td = dot(t, dtheta), tm = dot(t, m);

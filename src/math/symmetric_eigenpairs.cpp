@@ -8,7 +8,8 @@
 namespace flexarm {
 namespace {
 
-/// A coupling of this part of what it couples is none; and sweeps, of which some five are enough.
+/// Off-diagonal entries below kCoupling, relative to the diagonal entries that they couple, count as zero. About five
+/// sweeps are usually enough.
 constexpr double kCoupling = 1e-14;
 constexpr int kMostSweeps = 20;
 

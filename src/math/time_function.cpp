@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kLongestTable = 1 << 20;
 constexpr const char* kExpected = "an expression of t, or a table TIME:VALUE TIME:VALUE ...";
 
-/// Piecewise linear, constant outside.
+/// A piecewise linear function, constant outside of its points.
 struct Table {
   std::vector<double> times, values;
 
@@ -38,7 +38,8 @@ struct Table {
   }
 };
 
-/// A compiled expression of t. The parser points to `t`, and its evaluation writes to it: a copy compiles its own.
+/// A compiled expression of t. The parser has a pointer to `t_`, which every evaluation writes. So a copy compiles the
+/// expression anew.
 class Expression {
  public:
   /// @throws std::invalid_argument
@@ -52,7 +53,7 @@ class Expression {
   Expression(const Expression& other) : Expression(other.text_) {}
   Expression& operator=(const Expression&) = delete;
 
-  /// The end of a step is the beginning of the next: what is asked once more is not evaluated again.
+  /// Returns the value at a time. Recent values are cached, since the end of a step is the beginning of the next.
   double operator()(double time) const {
     for (const Known& known : known_)
       if (known.time == time) return known.value;
@@ -63,7 +64,8 @@ class Expression {
     return value;
   }
   bool has_branches() const { return has_branches_; }
-  /// Looking for variables writes to the parser: the expression must be a copy of one that is in use.
+  /// Returns the value if it does not depend on t. This modifies the parser, so call it only on a copy of an expression
+  /// that is in use.
   std::optional<double> constant() {
     return parser_.GetUsedVar().empty() ? std::optional(parser_.Eval()) : std::nullopt;
   }
@@ -74,13 +76,14 @@ class Expression {
     double time = std::numeric_limits<double>::quiet_NaN(), value = 0;
   };
   mutable double t_ = 0;
-  mutable std::array<Known, 4> known_;  // since a mean over a step takes the value at its end second
+  mutable std::array<Known, 4> known_;  // several, since a mean evaluates further times after that at the step's end
   mutable std::size_t next_ = 0;
   bool has_branches_ = false;
   mu::Parser parser_;
 };
 
-/// Mean of what is a polynomial between its points and constant outside. `of_piece(a, b)`: that of one piece.
+/// Returns the mean of a function that is a polynomial between its points and constant outside. `of_piece(a, b)`:
+/// returns the mean over a part of one piece.
 template <class Piecewise, class OfPiece>
 double mean_by_pieces(const Piecewise& function, double begin, double end, const OfPiece& of_piece) {
   auto next = std::upper_bound(function.times.begin(), function.times.end(), begin);
@@ -103,24 +106,24 @@ double mean(const CubicSpline& spline, double begin, double end) {
                         [&](double a, double b) { return (spline(a) + 4 * spline(0.5 * (a + b)) + spline(b)) / 6; });
 }
 
-/// Mean of a line from `a` to `b` that is cut at both limits.
+/// Returns the mean of a linear function from `a` to `b` that is cut at +-limit.
 double mean_of_cut_line(double a, double b, double limit) {
   if (std::max(std::abs(a), std::abs(b)) <= limit) return 0.5 * (a + b);
   if (std::min(a, b) >= limit) return limit;
   if (std::max(a, b) <= -limit) return -limit;
-  const auto integral = [limit](double x) {  // of the cut from 0 on
+  const auto integral = [limit](double x) {  // of the cut identity function from 0 to x
     return std::abs(x) <= limit ? 0.5 * x * x : limit * (std::abs(x) - 0.5 * limit);
   };
   return (integral(b) - integral(a)) / (b - a);
 }
 
-/// Slopes in front of and behind a point of a table; zero outside.
+/// Whether the slope of a table changes at a point by more than round-off; outside of the table it is zero.
 bool bends(const Table& table, std::size_t i) {
   const auto &t = table.times, &v = table.values;
   const bool is_first = i == 0, is_last = i + 1 == t.size();
   const double before = is_first ? 0 : (v[i] - v[i - 1]) / (t[i] - t[i - 1]);
   const double after = is_last ? 0 : (v[i + 1] - v[i]) / (t[i + 1] - t[i]);
-  // Points on a line are rounded, their times as well.
+  // Points on a straight line have round-off in values and times.
   double shortest = std::numeric_limits<double>::infinity();
   if (!is_first) shortest = std::min(shortest, t[i] - t[i - 1]);
   if (!is_last) shortest = std::min(shortest, t[i + 1] - t[i]);
@@ -136,7 +139,7 @@ void require_times(double begin, double end) {
 
 using Function = std::variant<double, Table, CubicSpline, Expression>;
 
-/// The numbers of "1:2:3"; none where a part is no number.
+/// Returns the numbers of "1:2:3"; none if a part is not a number.
 std::vector<double> parse_entry(std::string_view word) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin <= word.size();) {
@@ -177,7 +180,7 @@ void read_table(std::string_view text, Function& function) {
 
 }  // namespace
 
-/// Copied, never moved: an expression that is compiled anew may throw.
+/// Can be copied but not moved: a move would compile expressions anew, which may throw.
 struct TimeFunction::Implementation {
   Implementation() = default;
   template <class Kind>
@@ -262,7 +265,7 @@ double TimeFunction::operator()(double t) const {
 double TimeFunction::derivative(double t) const {
   if (const CubicSpline* spline = std::get_if<CubicSpline>(&implementation_->function)) return spline->derivative(t);
   const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
-  // Around the start the function may not exist for negative times: second-order forward difference.
+  // The function may not be defined for negative times. So near the start use a second-order forward difference.
   if (t >= 0 && t < step) return (-3 * (*this)(t) + 4 * (*this)(t + step) - (*this)(t + 2 * step)) / (2 * step);
   return ((*this)(t + step) - (*this)(t - step)) / (2 * step);
 }

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// ---------------------------------------------------------------- what is written down
+// ---------------------------------------------------------------- tracing
 
-thread_local TracedExpression::Value* trace = nullptr;  // muParser calls plain functions
+thread_local TracedExpression::Value* trace = nullptr;  // global, since muParser calls plain functions
 
 void note(std::uint64_t branch, double argument) {
   trace->branches = (trace->branches ^ branch) * 0x9e3779b97f4a7c15u;
@@ -123,7 +123,7 @@ class CornerSearch {
   bool is_enough() const { return found_.size() >= kMostCorners || values_ >= kMostValues; }
   double resolution(double time) const { return 2 * kEpsilon * std::abs(time); }
 
-  /// All switches between two times whose branches differ.
+  /// Finds all switches of branches between two times with different branches, by bisection.
   void find_switch(const Value& from, const Value& to) {
     const double middle = 0.5 * (from.time + to.time);
     if (middle <= from.time || middle >= to.time || to.time - from.time <= 0.5 * resolution(to.time)) {
@@ -136,7 +136,7 @@ class CornerSearch {
     if (between.branches != to.branches) find_switch(between, to);
   }
 
-  /// Of three values with the same branches: a pair of switches between them, or a corner without a branch.
+  /// Searches between three values with the same branches, for a pair of switches or for a corner without a branch.
   void look_between(const Value& a, const Value& b, const Value& c) {
     for (std::size_t k = 0; k < b.arguments.size(); ++k) {
       const double f = std::abs(b.arguments[k]);
@@ -144,7 +144,8 @@ class CornerSearch {
     }
     look_for_bend(a, b, c);
   }
-  /// Follows the parabola through an argument's values to its vertex. True if branches there are others.
+  /// Moves to the vertex of the parabola through an argument's values. If the branches differ there, adds the switches
+  /// on both sides and returns true.
   bool touches_zero(Value a, Value b, Value c, std::size_t k) {
     const Value first = a, last = c;
     for (int i = 0; i < 4; ++i) {
@@ -154,7 +155,7 @@ class CornerSearch {
       const double curvature = (up - down) / (left + right);
       const double slope = down + curvature * left, vertex = b.time - 0.5 * slope / curvature;
       const double lowest = b.arguments[k] - 0.25 * slope * slope / curvature;
-      // Far from zero compared with how it bends: no zero is missed.
+      // The vertex is so far from zero, relative to the curvature, that no zero is missed.
       if (std::abs(lowest) > std::abs(curvature) * std::pow(left + right, 2) || (lowest * curvature > 0 && i > 2))
         return false;
       if (!(vertex > a.time && vertex < c.time) || vertex == b.time) return false;
@@ -171,8 +172,9 @@ class CornerSearch {
   }
 
   static double bend(double a, double b, double c) { return std::abs(a - 2 * b + c); }
-  /// Halves the step of second differences where they are largest. Of a smooth function they shrink by four each time,
-  /// at a kink by two, at a jump they stay; until they are no more than round-off.
+  /// Searches for a kink or jump without a branch: halves the step of second differences where these are largest, until
+  /// they are only round-off. With each halving they shrink by four if the function is smooth, by two at a kink, and
+  /// not at all at a jump.
   void look_for_bend(const Value& a, const Value& b, const Value& c) {
     double t = a.time, h = b.time - a.time, f[5] = {a.value, 0, b.value, 0, c.value};
     const double at_first = bend(f[0], f[2], f[4]);
@@ -185,7 +187,7 @@ class CornerSearch {
       f[1] = at(t + h).value, f[3] = at(t + 3 * h).value;
       const double bends[3] = {bend(f[0], f[1], f[2]), bend(f[1], f[2], f[3]), bend(f[2], f[3], f[4])};
       const int most = std::max_element(bends, bends + 3) - bends;
-      // From a kink beside the middle down to a third; round-off grows as well.
+      // A kink that is not in the middle may shrink them to a third. Growing differences are round-off.
       if (!(bends[most] > 0.3 * last) || (halvings >= 3 && bends[most] > 1.1 * last)) break;
       last = bends[most];
       t += most * h;

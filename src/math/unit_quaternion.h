@@ -1,12 +1,12 @@
 #pragma once
 /// Finite rotations by the four components q = (q_0, q_v) of a unit quaternion (Euler parameters), scalar part first.
 ///
-/// Free of singularities, at the price of a fourth component and the constraint q.q = 1. q and -q are the same
-/// rotation. Conventions as in so3.h: d(Lambda) = hat(dvartheta) Lambda with dvartheta = T(q) dq = 2 G(q) dq,
+/// They have no singularities, but a fourth component and the constraint q.q = 1. q and -q are the same rotation.
+/// Conventions as in so3.h: d(Lambda) = hat(dvartheta) Lambda with dvartheta = T(q) dq = 2 G(q) dq,
 ///     G(q) = [-q_v, q_0 I + hat(q_v)]  (3 x 4),   G q = 0,   G G^T = I,   G^T G = I - q q^T.
-/// So T annihilates changes of the norm, and T^-1 = G^T/2 (4 x 3), a right inverse of T, is tangent to the sphere: T^-1
-/// T dq = dq for q.dq = 0. Operators are polynomials of q, and the derivatives are those of the polynomials, with
-/// respect to four independent components. (Nikravesh 1988, ch. 6; G is his matrix of spatial angular velocities)
+/// So T maps changes of the norm to zero. T^-1 = G^T/2 (4 x 3) is a right inverse of T, whose columns are tangent to
+/// the unit sphere: T^-1 T dq = dq for q.dq = 0. All operators are polynomials of q; their derivatives are with respect
+/// to four independent components. (Nikravesh 1988, ch. 6; G is his matrix of spatial angular velocities)
 
 #include "math/so3.h"
 
@@ -77,7 +77,7 @@ inline Vector4T<typename Q::Scalar> normalised(const Eigen::MatrixBase<Q>& q) {
   return (S(1) / sqrt(detail::dot(q, q))) * q;
 }
 
-/// d(q/|q|)/dq = (I - n n^T) / |q| with n = q/|q|: for q that are interpolated, whose norm is below 1.
+/// d(q/|q|)/dq = (I - n n^T) / |q| with n = q/|q|. For interpolated quaternions, whose norm is below 1.
 template <typename Q>
 inline Matrix4T<typename Q::Scalar> normalisation_derivative(const Eigen::MatrixBase<Q>& q) {
   using std::sqrt;
@@ -100,7 +100,7 @@ inline Matrix3T<typename Q::Scalar> rotation(const Eigen::MatrixBase<Q>& q) {
   return result;
 }
 
-/// Quaternion product q21 = q2 q1, for which Lambda(q21) = Lambda(q2) Lambda(q1). Normalise after many of them.
+/// Quaternion product q21 = q2 q1, for which Lambda(q21) = Lambda(q2) Lambda(q1). Normalise after many products.
 template <typename P, typename Q>
 inline Vector4T<typename P::Scalar> compound(const Eigen::MatrixBase<P>& q2, const Eigen::MatrixBase<Q>& q1) {
   using S = typename P::Scalar;

@@ -7,17 +7,17 @@
 
 #include <fmt/format.h>
 
-extern "C" {  // which the header says itself from Qhull 2020 on
+extern "C" {  // needed before Qhull 2020, whose header has no extern "C"
 #include <libqhull_r/qhull_ra.h>
 }
 
 namespace flexarm::meshes {
 namespace {
 
-/// Of the size: faces nearer to one plane than this are one. Files of meshes have single precision.
+/// Faces that are in one plane up to this, relative to the size, are merged. Mesh files have single precision.
 constexpr double kFlat = 1e-6;
 
-/// Qhull's memory, which is large, and what it has to say, which nobody reads.
+/// Owns Qhull's memory, which is large and therefore on the heap, and discards its messages.
 class Qhull {
  public:
   Qhull() : silence_(std::fopen("/dev/null", "w"), std::fclose) { qh_zero(state(), silence_.get()); }
@@ -43,7 +43,7 @@ double size_of(const std::vector<Vector3>& points) {
   return size;
 }
 
-/// Turned so that they go round the normal counterclockwise.
+/// Orders the face's corners counterclockwise about its normal.
 void orient(const std::vector<Vector3>& corners, Polytope::Face& face) {
   Vector3 area = Vector3::Zero();
   for (std::size_t i = 1; i + 1 < face.corners.size(); ++i) {
@@ -65,7 +65,7 @@ Polytope convex_hull(const std::vector<Vector3>& points) {
                                         command.data(), nullptr, qhull.silence()) != 0)
     throw FlatPoints();
   Polytope out;
-  std::map<int, int> numbers;  // of corners, by those of points
+  std::map<int, int> numbers;  // by index of the point: index of the corner
   facetT* facet;
   FORALLfacets {
     Polytope::Face face;
@@ -97,7 +97,7 @@ Polytope simple_hull(const std::vector<Vector3>& points, std::size_t most_corner
   std::vector<Vector3> chosen;
   for (const Vector3& direction : {Vector3(1, 1, 1), Vector3(1, -1, -1), Vector3(-1, 1, -1), Vector3(-1, -1, 1)})
     chosen.push_back(farthest([&](const Vector3& corner) { return direction.dot(corner); }));
-  // Of a body that is small in some direction these may lie in a plane: then all that follow go the same way.
+  // If the body is thin in some direction, these four may lie in one plane. So add the extreme corners along the axes.
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0})
       chosen.push_back(farthest([&](const Vector3& corner) { return sign * corner[axis]; }));

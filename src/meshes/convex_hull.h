@@ -1,5 +1,5 @@
 #pragma once
-/// The convex hull of points.
+/// Computes convex hulls of points.
 
 #include <stdexcept>
 #include <vector>
@@ -8,17 +8,19 @@
 
 namespace flexarm::meshes {
 
-/// Points that lie in a plane, or are fewer than four.
+/// The error for points that lie in a plane, or are fewer than four.
 struct FlatPoints : std::runtime_error {
   FlatPoints() : std::runtime_error("its points lie in a plane, or too close to one") {}
 };
 
-/// The least convex body that holds all points [m]. Faces that are one plane but for a millionth of its size are one.
+/// Returns the convex hull of points [m]. Faces that are in one plane, up to a millionth of the size, are merged.
 /// @throws FlatPoints
 Polytope convex_hull(const std::vector<Vector3>& points);
 
-/// The same, but with not more than so many of the corners, if it can be had with them: chosen one after the other,
-/// each where the body that there is lacks most. It lies inside of the hull.
+/// Returns the convex hull. If it has more than `most_corners` corners, at most max(most_corners, 10) of them are used.
+/// These are chosen one by one: each is the corner that is farthest outside of the hull of those chosen before. The
+/// result lies inside the convex hull.
+/// @throws FlatPoints
 Polytope simple_hull(const std::vector<Vector3>& points, std::size_t most_corners);
 
 }  // namespace flexarm::meshes

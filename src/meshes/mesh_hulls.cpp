@@ -13,7 +13,7 @@ namespace flexarm::meshes {
 
 std::vector<Polytope> hulls_of_file(const std::string& path, const Vector3& scale) {
   Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, true);  // or all would be one mesh
+  importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, true);  // else all meshes would be merged
   const aiScene* const file = importer.ReadFile(path, aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
   if (!file) throw std::runtime_error(importer.GetErrorString());
   std::vector<Polytope> out;
@@ -27,7 +27,7 @@ std::vector<Polytope> hulls_of_file(const std::string& path, const Vector3& scal
     }
     try {
       out.push_back(simple_hull(points, kMostCorners));
-    } catch (const FlatPoints&) {  // a label on a body touches nothing
+    } catch (const FlatPoints&) {  // flat meshes, such as labels on a body, are left out
     }
   }
   if (out.empty()) throw std::runtime_error("no mesh in it has a volume");

@@ -1,5 +1,5 @@
 #pragma once
-/// Files of meshes as convex bodies.
+/// Reads mesh files as convex bodies.
 
 #include <string>
 #include <vector>
@@ -8,13 +8,12 @@
 
 namespace flexarm::meshes {
 
-/// Most corners of a hull. Each is a point that touches.
+/// The largest number of corners of a hull. Each corner is a contact point.
 constexpr std::size_t kMostCorners = 64;
 
-/// The convex hull of each mesh of a file that Assimp knows (STL, OBJ, Collada, ...), scaled, in the axes of the file;
-/// see simple_hull() for those with more than kMostCorners corners.
-/// Flat meshes are left out.
-/// @throws std::runtime_error saying why, if the file cannot be read, or nothing in it has a volume
+/// Returns the convex hull of each mesh in a file that Assimp can read (STL, OBJ, Collada, ...), scaled, in the file's
+/// frame. Hulls with more than kMostCorners corners are simplified, see simple_hull(). Flat meshes are left out.
+/// @throws std::runtime_error if the file cannot be read, or no mesh in it has a volume
 std::vector<Polytope> hulls_of_file(const std::string& path, const Vector3& scale);
 
 }  // namespace flexarm::meshes

@@ -8,17 +8,17 @@
 namespace flexarm::messages {
 namespace {
 
-// As parts of the scene's radius.
+// Per radius of the scene.
 constexpr double kShaft = 0.006, kHead = 0.018, kHeadLength = 0.06;
-/// Of the longest one: what is shorter is not drawn.
+/// Per length of the longest arrow; shorter arrows are not drawn.
 constexpr double kShortest = 0.02;
-/// What is below is round-off, whatever the scene [N, N m].
+/// Smaller forces and moments are round-off in any scene [N, N m].
 constexpr double kSmallest = 1e-6;
-/// A circle goes around so far, its head included.
+/// Angle of a moment's circular arrow, including its head [rad].
 constexpr double kTurn = 1.6 * M_PI;
 constexpr int kArcs = 24;
 
-/// A tube along the sections that ends in a cone of that length. `at(part)`: the section so far along.
+/// A tube that ends in a cone, kHeadLength long. `at(part)`: the section at the fraction `part` of the length.
 template <class At>
 TriangleMesh arrow_along(const At& at, double length, int parts, double radius) {
   const double head = std::min(kHeadLength * radius, 0.5 * length), neck = 1 - head / length;
@@ -40,7 +40,7 @@ TriangleMesh force_arrow(const Vector3& start, const Vector3& way, double radius
   return arrow_along([&](double part) { return Pose{start + part * way, along}; }, way.norm(), 1, radius);
 }
 
-/// Around `axis`, of that radius.
+/// A circular arrow around `axis` with the radius `circle`; `radius`: of the scene.
 TriangleMesh moment_arrow(const Vector3& center, const Vector3& axis, double circle, double radius) {
   const Quaternion upright = Quaternion::FromTwoVectors(Vector3::UnitZ(), axis);
   const auto at = [&](double part) {
@@ -51,7 +51,7 @@ TriangleMesh moment_arrow(const Vector3& center, const Vector3& axis, double cir
   return arrow_along(at, kTurn * circle, kArcs, radius);
 }
 
-/// Of the largest one; 0: too small to be seen.
+/// Fraction of the largest amount; 0 if the arrow would be too small to be seen.
 double shown_part(double amount, double largest) {
   const double part = largest > kSmallest ? amount / largest : 0.0;
   return part < kShortest ? 0 : part;

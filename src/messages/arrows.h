@@ -1,5 +1,5 @@
 #pragma once
-/// Forces and moments as arrows.
+/// Draws forces and moments as arrows.
 
 #include <std_msgs/ColorRGBA.h>
 #include <std_msgs/Header.h>
@@ -13,21 +13,21 @@
 
 namespace flexarm::messages {
 
-/// What the longest arrow and the largest circle stand for: the largest force [N] and moment [N m] that were shown.
+/// The largest force [N] and moment [N m] shown so far; the longest arrow and the largest circle stand for them.
 struct ArrowScale {
   double force = 0, moment = 0;
 
   void note(const std::vector<ActingWrench>& wrenches);
 };
 
-/// A straight arrow for the force, an arrow that goes around for the moment; none where they are too small to be seen.
-/// Both are surfaces in the world. @param radius  of the scene [m]
+/// A straight arrow for the force and a circular arrow for the moment, as surfaces in world coordinates. Leaves out an
+/// arrow that would be too small to be seen. @param radius  of the scene [m]
 TriangleMesh arrow_mesh(const ActingWrench& wrench, const ArrowScale& scale, double radius);
 
-/// How long the longest arrow is, and how large the largest circle, as parts of the scene's radius.
+/// Length of the longest arrow and radius of the largest circle, per radius of the scene.
 constexpr double kLongestArrow = 0.35, kLargestCircle = 0.15;
 
-/// Adds one marker of that name with all of them, if there are any.
+/// Adds one marker with this name that contains all arrows, if there are any.
 void add_arrows(const std_msgs::Header& header, const std::string& name, const std::vector<ActingWrench>& wrenches,
                 const ArrowScale& scale, double radius, const std_msgs::ColorRGBA& color,
                 visualization_msgs::MarkerArray& message);

@@ -9,10 +9,11 @@ namespace flexarm::messages {
 
 std_msgs::ColorRGBA make_color(double red, double green, double blue, double alpha = 1);
 
-/// Of a part from 0 to 1 of the largest strain: blue, cyan, green, yellow, red, linear between.
+/// The colour of a strain, given as a fraction (0 to 1) of the largest strain: from blue over cyan, green and yellow to
+/// red, with linear interpolation.
 std_msgs::ColorRGBA strain_color(double part);
 
-/// A colour under a light from above: rviz does not light triangles that have colours of their own.
+/// Shades a colour as if lit from above, since rviz does not light triangles that have their own colours.
 std_msgs::ColorRGBA lit(std_msgs::ColorRGBA color, const Vector3& normal);
 
 }  // namespace flexarm::messages

@@ -1,5 +1,5 @@
 #pragma once
-/// Contacts as messages.
+/// Makes messages of contacts.
 
 #include <flexarm/ContactArray.h>
 #include <ros/time.h>
@@ -11,11 +11,12 @@
 
 namespace flexarm::messages {
 
-/// All points that touch now, in the root link's frame.
+/// All present contact points, in the root link's frame.
 ContactArray contact_message(const Simulation& simulation, const ros::Time& stamp, const std::string& frame_prefix);
 
-/// The same as a gazebo_msgs/ContactsState, or what has its fields: one state for each pair that touches. Wrenches are
-/// on the first of a pair: forces at their points, the total one about the origin of the frame.
+/// The same as a gazebo_msgs/ContactsState or another type with its fields: one state for each pair that touches.
+/// Wrenches act on the first body of a pair. Each point's wrench has only a force. The total wrench refers to the
+/// origin of the frame.
 template <class ContactsState>
 ContactsState gazebo_message(const ContactArray& contacts) {
   ContactsState message;

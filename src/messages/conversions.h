@@ -1,5 +1,5 @@
 #pragma once
-/// From the core's types to messages, and back.
+/// Converts the core's types to messages, and back.
 
 #include <geometry_msgs/Point.h>
 #include <geometry_msgs/Pose.h>
@@ -10,7 +10,7 @@
 
 namespace flexarm::messages {
 
-/// Of a message with x, y and z.
+/// Converts a message with x, y and z.
 template <class Message>
 Vector3 to_vector(const Message& message) {
   return {message.x, message.y, message.z};

@@ -7,12 +7,13 @@
 #include "messages/colors.h"
 #include "messages/conversions.h"
 #include "messages/markers.h"
+#include "messages/picture_axes.h"
 #include "messages/triangle_mesh.h"
 
 namespace flexarm::messages {
 namespace {
 
-// Lengths as parts of the scene's radius.
+// Lengths per radius of the scene.
 constexpr double kDistance = 1.42;  ///< from the scene's centre
 constexpr double kBarCentre = 0.72, kHalfHeight = 0.33;
 constexpr double kBarRadius = 0.025;
@@ -24,7 +25,7 @@ constexpr const char* kName = "legend";
 
 class Legend {
  public:
-  Legend(const std_msgs::Header& header, const SceneExtent& extent, visualization_msgs::MarkerArray& message)
+  Legend(const std_msgs::Header& header, const pictures::SceneExtent& extent, visualization_msgs::MarkerArray& message)
       : header_(header), extent_(extent), message_(message) {}
 
   void add_bar(double largest) {
@@ -48,7 +49,7 @@ class Legend {
     add_text(0, height(1) + 2 * kLegendTextHeight, "edge strain");
   }
 
-  /// Below the bar.
+  /// Adds samples of arrows below the bar.
   void add_arrows(const ArrowScale& scale, const std::vector<ArrowKind>& kinds) {
     double height = kBarCentre - kHalfHeight - kLine;
     if (scale.force > 0) {
@@ -68,7 +69,7 @@ class Legend {
 
  private:
   visualization_msgs::Marker next(int type) { return make_marker(header_, kName, type, ++last_id_); }
-  /// In the picture, as parts of the scene's radius.
+  /// A point in the plane of the picture; coordinates per radius of the scene.
   Vector3 place(double right, double up) const {
     return extent_.center + extent_.radius * ((right - kDistance) * axes_.right + up * axes_.up);
   }
@@ -88,7 +89,7 @@ class Legend {
   }
 
   const std_msgs::Header& header_;
-  const SceneExtent& extent_;
+  const pictures::SceneExtent& extent_;
   const PictureAxes axes_ = picture_axes();
   visualization_msgs::MarkerArray& message_;
   int last_id_ = 0;
@@ -96,7 +97,7 @@ class Legend {
 
 }  // namespace
 
-void add_legend(const std_msgs::Header& header, const SceneExtent& extent, const LegendContent& content,
+void add_legend(const std_msgs::Header& header, const pictures::SceneExtent& extent, const LegendContent& content,
                 visualization_msgs::MarkerArray& message) {
   Legend legend(header, extent, message);
   if (content.largest_strain) legend.add_bar(*content.largest_strain);

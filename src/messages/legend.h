@@ -1,5 +1,5 @@
 #pragma once
-/// What colours and arrows mean.
+/// The legend of colours and arrows in rviz.
 
 #include <std_msgs/Header.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -9,26 +9,26 @@
 #include <vector>
 
 #include "messages/arrows.h"
-#include "messages/scene_extent.h"
+#include "pictures/scene_extent.h"
 
 namespace flexarm::messages {
 
-/// Arrows of one colour.
+/// The arrows of one colour.
 struct ArrowKind {
   std::string name;
   std_msgs::ColorRGBA color;
 };
 
 struct LegendContent {
-  std::optional<double> largest_strain;  ///< that is drawn red [-]; none: nothing has these colours
+  std::optional<double> largest_strain;  ///< strain that is drawn red [-]; empty: nothing is coloured by strain
   ArrowScale arrows;
-  std::vector<ArrowKind> kinds;  ///< that the scene may have
+  std::vector<ArrowKind> kinds;  ///< kinds that may occur in the scene
 };
 
-/// Adds the legend, at the left of the picture, beside all that the scene reaches: an upright bar of the colours with
-/// the strains that they stand for, below it the longest arrow and the largest circle with the force and the moment
-/// that they stand for, once there are some, and the colours of the kinds of arrows.
-void add_legend(const std_msgs::Header& header, const SceneExtent& extent, const LegendContent& content,
+/// Adds the legend at the left of the picture, beside the space that the scene can reach. It shows a vertical bar of
+/// the colours with their strains. Below the bar are the longest arrow and the largest circle with their force and
+/// moment, once there are any, and the colours of the kinds of arrows.
+void add_legend(const std_msgs::Header& header, const pictures::SceneExtent& extent, const LegendContent& content,
                 visualization_msgs::MarkerArray& message);
 
 }  // namespace flexarm::messages

@@ -13,50 +13,50 @@
 #include "messages/conversions.h"
 #include "messages/legend.h"
 #include "messages/markers.h"
-#include "messages/mesh_file.h"
+#include "messages/picture_axes.h"
+#include "pictures/recording.h"
+#include "pictures/surface_meshes.h"
 
 namespace flexarm::messages {
 namespace {
 
 constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
-// As parts of the scene's radius:
-constexpr double kSmallestRadius = 0.004;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
-constexpr double kTrailWidth = 0.004, kTextHeight = 0.06, kGapOfText = 0.02;
-constexpr double kLineSpacing = 1.3;  ///< of rviz, in heights of the text
-/// What is below is the round-off of a beam without load.
+// Per radius of the scene:
+constexpr double kSmallestRadius =
+    0.004;  ///< of a tube; a thinner one, such as a rod of 3 mm by 2 m, would be hard to see
+constexpr double kTrailWidth = 0.004, kLineWidth = 0.006, kTextHeight = 0.06, kGapOfText = 0.02;
+constexpr double kLineSpacing = 1.3;  ///< of rviz, in multiples of the text's height
+/// Smaller strains are the round-off of a beam without load.
 constexpr double kSmallestStrain = 1e-9;
 
 constexpr std::size_t kTextLines = 3, kMostLines = 5, kLongestLine = 64;
 const std_msgs::ColorRGBA kStateColor = make_color(1, 0.8, 0.2);
+const std_msgs::ColorRGBA kLineColor = make_color(0.85, 0.8, 0.65);
 
 const ArrowKind kEfforts{"joint efforts", make_color(1, 0.65, 0.1)};
 const ArrowKind kWrenches{"applied wrenches", make_color(1, 0.35, 0.8)};
 const ArrowKind kReactions{"reactions", make_color(0.6, 0.9, 1)};
 const ArrowKind kContacts{"contacts", make_color(0.5, 1, 0.4)};
 
-bool measures_reaction(const scene::Sensor& sensor) {
-  return sensor.kind == scene::SensorKind::Wrench || sensor.kind == scene::SensorKind::Reaction;
-}
-
-TriangleMesh mesh_of(const scene::VisualDescription& visual) {
+TriangleMesh mesh_of(const scene::VisualDescription& visual, const std::string& scene_file) {
   return std::visit(
-      [](const auto& shape) {
+      [&](const auto& shape) -> TriangleMesh {
         using Shape = std::decay_t<decltype(shape)>;
         if constexpr (std::is_same_v<Shape, scene::BoxShape>) return box_mesh(shape);
         if constexpr (std::is_same_v<Shape, scene::CylinderShape>) return cylinder_mesh(shape);
         if constexpr (std::is_same_v<Shape, scene::SphereShape>) return sphere_mesh(shape);
-        if constexpr (std::is_same_v<Shape, scene::MeshShape>) return read_mesh(shape);
+        if constexpr (std::is_same_v<Shape, scene::MeshShape>) return {pictures::surface_of_mesh(shape, scene_file)};
       },
       visual.shape);
 }
 
-/// The shapes of a link's <visual>, or a tube of that radius where there is none that can be drawn.
-std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::vector<Pose>& sections, double radius,
-                           const MarkerMessages::Warn& warn) {
+/// The shapes of a link's <visual>, or a tube of that radius if no shape can be drawn.
+std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::string& scene_file,
+                           const std::vector<Pose>& sections, double radius, const MarkerMessages::Warn& warn) {
   std::vector<Skin> skins;
   for (const scene::VisualDescription& visual : link.visuals) try {
       TriangleMesh mesh;
-      mesh.add(mesh_of(visual), visual.origin);
+      mesh.add(mesh_of(visual, scene_file), visual.origin);
       skins.emplace_back(mesh, sections);
     } catch (const std::runtime_error& error) {
       const auto* file = std::get_if<scene::MeshShape>(&visual.shape);
@@ -67,14 +67,14 @@ std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::vector
   return skins;
 }
 
-/// Below (side -1) or above (1) all that the scene reaches in the picture.
-void place_text(std::size_t lines, int side, const SceneExtent& extent, visualization_msgs::Marker& text) {
+/// Places text below (side -1) or above (1) the space that the scene can reach, as seen in the picture.
+void place_text(std::size_t lines, int side, const pictures::SceneExtent& extent, visualization_msgs::Marker& text) {
   const double away = kOutline + kGapOfText + 0.5 * kLineSpacing * kTextHeight * static_cast<double>(lines);
   text.pose.position = to_point(extent.center + side * away * extent.radius * picture_axes().up);
   text.scale.z = kTextHeight * extent.radius;
 }
 
-/// In lines as long as the picture is wide; what is beyond the last one is left out.
+/// Breaks text into lines as long as the picture is wide, at most kMostLines; drops the rest.
 std::vector<std::string> wrapped(const std::string& text) {
   std::istringstream words(text);
   std::vector<std::string> lines(1);
@@ -92,7 +92,7 @@ std::vector<std::string> wrapped(const std::string& text) {
   return lines;
 }
 
-/// Free of what the motion exchanges: only errors of the steps change it [J].
+/// Energy - work + dissipated: constant but for the error of the steps [J].
 double balance(const Energies& energies) {
   return energies.total() - energies.work + energies.dissipated;
 }
@@ -100,14 +100,14 @@ double balance(const Energies& energies) {
 }  // namespace
 
 bool* MarkerChoice::find(const std::string& name) {
-  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &contacts, &text, &legend};
+  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &contacts, &lines, &text, &legend};
   const auto found = std::find(names().begin(), names().end(), name);
   return found == names().end() ? nullptr : members[found - names().begin()];
 }
 
 const std::vector<std::string>& MarkerChoice::names() {
-  static const std::vector<std::string> names{"beams",     "trails",   "efforts", "wrenches",
-                                              "reactions", "contacts", "text",    "legend"};
+  static const std::vector<std::string> names{"beams",    "trails", "efforts", "wrenches", "reactions",
+                                              "contacts", "lines",  "text",    "legend"};
   return names;
 }
 
@@ -116,14 +116,16 @@ MarkerMessages::MarkerMessages(const Simulation& simulation, const std::string& 
     : simulation_(simulation),
       root_frame_(root_frame),
       choice_(choice),
-      extent_(scene_extent(simulation)),
+      extent_(pictures::scene_extent(simulation)),
       energy_(balance(simulation.energies())),
+      cylinders_(simulation),
       trails_(simulation, choice.trail_duration) {
   for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
     const std::vector<Pose> sections = simulation.undeformed_sections(link, kPointsBetweenNodes);
     if (sections.empty()) continue;
     const double radius = std::max(simulation.beam_radius(link), kSmallestRadius * extent_.radius);
-    beams_.push_back({link, skins_of(simulation.scene().links[link], sections, radius, warn), {}, {}});
+    beams_.push_back(
+        {link, skins_of(simulation.scene().links[link], simulation.scene().file, sections, radius, warn), {}, {}});
   }
 }
 
@@ -140,6 +142,8 @@ visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std
   header.frame_id = root_frame_;
   visualization_msgs::MarkerArray message;
   if (choice_.beams) add_beams(header, message);
+  if (choice_.beams) cylinders_.add_to(header, message);
+  if (choice_.lines) add_lines(header, message);
   add_all_arrows(header, message);
   if (choice_.trails) {
     trails_.update();
@@ -180,18 +184,24 @@ void MarkerMessages::add_beams(const std_msgs::Header& header, visualization_msg
   }
 }
 
+void MarkerMessages::add_lines(const std_msgs::Header& header, visualization_msgs::MarkerArray& message) {
+  for (std::size_t i = 0; i < simulation_.scene().force_elements.size(); ++i) {
+    simulation_.line_points(i, line_points_);
+    if (line_points_.size() < 2) continue;
+    visualization_msgs::Marker line =
+        make_marker(header, "lines", visualization_msgs::Marker::LINE_STRIP, static_cast<int>(i));
+    line.scale.x = kLineWidth * extent_.radius;
+    line.color = kLineColor;
+    for (const Vector3& point : line_points_) line.points.push_back(to_point(point));
+    message.markers.push_back(line);
+  }
+}
+
 void MarkerMessages::add_all_arrows(const std_msgs::Header& header, visualization_msgs::MarkerArray& message) {
   if (choice_.efforts) simulation_.effort_wrenches(efforts_);
   if (choice_.wrenches) simulation_.outside_wrenches(wrenches_);
-  reactions_.clear();
-  const std::vector<scene::Sensor>& sensors = simulation_.scene().sensors;
-  for (std::size_t i = 0; i < sensors.size() && choice_.reactions; ++i)
-    if (measures_reaction(sensors[i])) reactions_.push_back(simulation_.sensed_wrench(i));
-  contacts_.clear();
-  if (choice_.contacts) simulation_.contacts(contacts_);
-  pushes_.clear();
-  for (const ActingContact& contact : contacts_)
-    pushes_.push_back({contact.position, {contact.force, Vector3::Zero()}});
+  if (choice_.reactions) pictures::find_reactions(simulation_, reactions_);
+  if (choice_.contacts) pictures::find_pushes(simulation_, pushes_);
   for (const auto* shown : {&efforts_, &wrenches_, &reactions_, &pushes_}) arrow_scale_.note(*shown);
   const auto add = [&](const ArrowKind& kind, const std::vector<ActingWrench>& wrenches) {
     add_arrows(header, kind.name, wrenches, arrow_scale_, extent_.radius, kind.color, message);

@@ -1,5 +1,5 @@
 #pragma once
-/// What all markers have in common.
+/// Helpers that all markers share.
 
 #include <std_msgs/Header.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -9,8 +9,8 @@
 
 namespace flexarm::messages {
 
-/// A marker of a type of visualization_msgs::Marker, in the frame of its header. Names are what rviz has check boxes
-/// for; ids tell markers of one name apart.
+/// A marker of a type of visualization_msgs::Marker, in the frame of the header. `name` is its namespace, for which
+/// rviz has a check box; `id` distinguishes markers of one namespace.
 inline visualization_msgs::Marker make_marker(const std_msgs::Header& header, const std::string& name, int type,
                                               int id = 0) {
   visualization_msgs::Marker marker;
@@ -25,7 +25,7 @@ inline visualization_msgs::Marker make_marker(const std_msgs::Header& header, co
   return marker;
 }
 
-/// Adds a marker of points, unless it has none, which rviz would complain about.
+/// Adds a marker that consists of points, unless it has none: rviz warns about empty markers.
 inline void add_if_any(visualization_msgs::Marker marker, visualization_msgs::MarkerArray& message) {
   if (!marker.points.empty()) message.markers.push_back(std::move(marker));
 }

@@ -8,7 +8,7 @@ namespace {
 
 using scene::SensorKind;
 
-/// Three of a sample's values.
+/// Three values of a sample.
 Vector3 part(const SensorSample& sample, std::size_t first) {
   return {sample.values[first], sample.values[first + 1], sample.values[first + 2]};
 }
@@ -20,7 +20,8 @@ geometry_msgs::WrenchStamped wrench_message(const SensorSample& sample) {
   return message;
 }
 
-/// A covariance of -1 says that there is no estimate of that kind; one of zeros, that it is not known.
+/// In a covariance, -1 in the first entry means that the quantity is not measured; all zeros mean an unknown
+/// covariance.
 sensor_msgs::Imu imu_message(const SensorSample& sample) {
   sensor_msgs::Imu message;
   message.angular_velocity = to_vector3(part(sample, 0));

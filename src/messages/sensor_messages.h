@@ -1,5 +1,5 @@
 #pragma once
-/// Samples of sensors as messages of the usual types.
+/// Makes messages of sensors' samples, with standard types where possible.
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
@@ -19,9 +19,11 @@ namespace flexarm::messages {
 using SensorMessage =
     std::variant<geometry_msgs::WrenchStamped, sensor_msgs::Imu, geometry_msgs::PoseStamped, StrainStamped>;
 
-/// The last sample of a sensor: forces of a section or in a link's axes stand in that link's frame (those of a section
-/// in its own axes, with which the link's agree at the beginning of a straight beam), reactions and poses in the
-/// root's, what an inertial unit measures in its own axes at the frame of its link.
+/// The last sample of a sensor. The frame of the message depends on the kind of sensor:
+/// - forces in a section or in a link's axes: the link's frame. Forces in a section have the section's axes, which are
+///   the link's axes only at the beginning of a straight beam.
+/// - reactions and poses: the root link's frame
+/// - inertial units: the link's frame; values have the unit's own axes
 SensorMessage sensor_message(const Simulation& simulation, std::size_t sensor, const ros::Time& stamp,
                              const std::string& frame_prefix);
 

@@ -12,16 +12,16 @@
 namespace flexarm::messages {
 namespace {
 
-/// An edge reaches over so many sections at most, unless it is shorter than this part of the distance between two: what
-/// is nearest may jump along it.
+/// An edge may reach over kLongestReach sections at most. Edges shorter than kShortestEdge times the distance between
+/// two sections are never split, since the nearest point of the line may jump along any edge.
 constexpr double kLongestReach = 2, kShortestEdge = 0.25;
-/// Of a skin: beyond them nothing is split any more.
+/// Largest number of triangles of a skin; at this number splitting ends.
 constexpr std::size_t kMostSkinTriangles = 60000;
 
 }  // namespace
 
-/// Splits triangles at the middle of the edge that reaches farthest along the line, until none reaches too far.
-/// Neighbours split their common edge at the same place, sooner or later: there are no gaps.
+/// Splits triangles at the middle of the edge that reaches over the most sections, until none reaches too far.
+/// Neighbours split their common edge at the same place, in whatever order, so there are no gaps.
 class Skin::Splitter {
  public:
   Splitter(TriangleMesh mesh, const std::vector<Pose>& sections) : mesh_(std::move(mesh)), sections_(sections) {
@@ -70,7 +70,7 @@ class Skin::Splitter {
     }
     return best;
   }
-  /// In sections; 0 of one that is short.
+  /// Number of sections over which an edge reaches; 0 for a short edge.
   double reach(const TriangleMesh::Triangle& triangle, int edge) const {
     const int a = triangle[edge], b = triangle[(edge + 1) % 3];
     if ((mesh_.vertices[a].position - mesh_.vertices[b].position).norm() < shortest_) return 0;
@@ -90,7 +90,7 @@ class Skin::Splitter {
   const std::vector<Pose>& sections_;
   double shortest_ = 0;  ///< [m]
   std::vector<Place> places_;
-  std::map<std::pair<int, int>, int> middles_;  ///< of edges between two vertices
+  std::map<std::pair<int, int>, int> middles_;  ///< vertex in the middle of an edge, by the edge's two vertices
 };
 
 Skin::Skin(const TriangleMesh& mesh, const std::vector<Pose>& sections) {
@@ -107,7 +107,7 @@ Skin Skin::tube(const std::vector<Pose>& sections, double radius) {
   const std::size_t wall = kSides * sections.size(), cap = kSides + 1;
   Skin skin;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    // Not the nearest ones: another turn of a coil may be nearer.
+    // Assigned by index, not by the nearest section, which may belong to another turn of a coil.
     const int section = i < wall ? static_cast<int>(i / kSides) : i < wall + cap ? 0 : last;
     skin.attach(mesh.vertices[i], section < last ? Place{section, 0} : Place{last - 1, 1}, sections);
   }

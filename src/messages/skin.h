@@ -1,5 +1,5 @@
 #pragma once
-/// Surfaces that bend with a beam.
+/// A surface that bends with a beam.
 
 #include <visualization_msgs/Marker.h>
 
@@ -11,36 +11,36 @@
 
 namespace flexarm::messages {
 
-/// A mesh whose vertices hang on the sections of a beam: each on the two between which the nearest point of the
-/// undeformed line lies, and moves as these carry it, in the parts by which it is nearer to one or the other. What is
-/// beyond an end goes with that end's section.
+/// A mesh whose vertices follow the sections of a beam. For each vertex, the nearest point of the undeformed centreline
+/// is found, which lies between two sections. The vertex moves with both of them, weighted by how near the point is to
+/// each. Vertices beyond an end of the beam move with the end's section.
 class Skin {
  public:
-  /// A part of a section's deformed state: where it is, and what is drawn in colour there.
+  /// The deformed state of a section: its pose, and the strain that its colour shows.
   struct Section {
     Pose pose;
-    double strain = 0;  ///< from 0 to 1, of the largest one
+    double strain = 0;  ///< as a fraction (0 to 1) of the largest strain
   };
 
-  /// Triangles that reach over several sections are split, so that they bend.
+  /// Splits triangles that reach over several sections, so that they can bend.
   /// @param sections  at least two, undeformed, in the frame of the mesh
   Skin(const TriangleMesh& mesh, const std::vector<Pose>& sections);
-  /// A tube around the line [m].
+  /// A tube around the line through the sections; `radius` [m].
   static Skin tube(const std::vector<Pose>& sections, double radius);
 
-  /// Appends it to a TRIANGLE_LIST with colours.
-  /// @param sections  the same ones, deformed
+  /// Appends the surface to a marker of type TRIANGLE_LIST with colours.
+  /// @param sections  the same sections as in the constructor, deformed
   void draw(const std::vector<Section>& sections, visualization_msgs::Marker& marker);
 
  private:
   struct Place {
-    int section = 0;  ///< the first of the two
-    double part = 0;  ///< of the way to the second one
+    int section = 0;  ///< the first of two sections
+    double part = 0;  ///< fraction of the way to the second section
     double along() const { return section + part; }
   };
   struct Vertex {
     Place place;
-    std::array<TriangleMesh::Vertex, 2> in_section;  ///< in the frames of the two
+    std::array<TriangleMesh::Vertex, 2> in_section;  ///< in the frames of the two sections
   };
   struct Corner {
     geometry_msgs::Point point;
@@ -53,8 +53,8 @@ class Skin {
 
   std::vector<Vertex> vertices_;
   std::vector<TriangleMesh::Triangle> triangles_;
-  std::vector<Matrix3> rotations_;  ///< scratch, of the sections
-  std::vector<Corner> corners_;     ///< scratch, of the vertices
+  std::vector<Matrix3> rotations_;  ///< scratch, one for each section
+  std::vector<Corner> corners_;     ///< scratch, one for each vertex
 };
 
 }  // namespace flexarm::messages

@@ -10,7 +10,7 @@
 namespace flexarm::messages {
 namespace {
 
-/// Of all instants, however fast the simulation runs: what is between them is left out.
+/// Largest number of instants on a trail, however fast the simulation runs; instants in between are dropped.
 constexpr double kMostInstants = 500;
 
 }  // namespace
@@ -19,7 +19,7 @@ void Trails::update() {
   const double now = simulation_.time();
   if (!instants_.empty() && now < instants_.back().time) instants_.clear();
   while (!instants_.empty() && instants_.front().time < now - duration_) instants_.pop_front();
-  // The last one is where the probe is; the one before stays if it is far enough from its neighbours in time.
+  // The newest instant stays on the trail only if the instant before it is far enough back in time.
   const std::size_t count = instants_.size();
   if (count >= 2 && now - instants_[count - 2].time < duration_ / kMostInstants) instants_.pop_back();
   if (!instants_.empty() && instants_.back().time == now) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the probes have been.
+/// Draws the paths of the probes.
 
 #include <std_msgs/Header.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -11,13 +11,13 @@
 
 namespace flexarm::messages {
 
-/// Lines behind the probes of a scene, which fade out over a time.
+/// Lines behind the probes of a scene, which fade out with time.
 class Trails {
  public:
-  /// @param duration  simulated [s]
+  /// @param duration  length of a trail in simulated time [s]
   Trails(const Simulation& simulation, double duration) : simulation_(simulation), duration_(duration) {}
 
-  /// Takes note of where the probes are, if that is news. Where time has gone back, the trails begin anew.
+  /// Notes the places of the probes, if time has changed. If time has gone back, trails start empty.
   void update();
   void forget() { instants_.clear(); }
   /// One line for each probe. @param width  [m]

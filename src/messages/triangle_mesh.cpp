@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "messages/conversions.h"
+#include "pictures/shape_surface.h"
 
 namespace flexarm::messages {
 namespace {
@@ -12,7 +13,7 @@ Vector3 radial(int side) {
   return {0, std::cos(angle), std::sin(angle)};
 }
 
-/// `forwards`: the outside looks along the section's x axis.
+/// Adds a cap. `forwards`: its outside faces along the section's x axis.
 void add_cap(const Pose& section, double radius, bool forwards, TriangleMesh& mesh) {
   const Vector3 normal = section.orientation * Vector3(forwards ? 1 : -1, 0, 0);
   const int center = mesh.add(section.position, normal);
@@ -59,42 +60,15 @@ TriangleMesh tube_mesh(const std::vector<Pose>& sections, const std::vector<doub
 }
 
 TriangleMesh box_mesh(const scene::BoxShape& box) {
-  TriangleMesh mesh;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double sign : {-1.0, 1.0}) {
-      const Vector3 normal = sign * Vector3::Unit(axis);
-      const Vector3 u = Vector3::Unit((axis + 1) % 3), v = normal.cross(u);
-      const auto corner = [&](double a, double b) {
-        return mesh.add(0.5 * box.size.cwiseProduct(normal + a * u + b * v), normal);
-      };
-      const int a = corner(-1, -1), b = corner(1, -1), c = corner(1, 1), d = corner(-1, 1);
-      mesh.add_quad(a, b, c, d);
-    }
-  return mesh;
+  return {pictures::box_surface(box)};
 }
 
 TriangleMesh cylinder_mesh(const scene::CylinderShape& cylinder) {
-  const Quaternion upright(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()));
-  const Vector3 half = 0.5 * cylinder.length * Vector3::UnitZ();
-  return tube_mesh({{-half, upright}, {half, upright}}, {cylinder.radius, cylinder.radius});
+  return {pictures::cylinder_surface(cylinder, kSides)};
 }
 
 TriangleMesh sphere_mesh(const scene::SphereShape& sphere) {
-  constexpr int kRings = kSides / 2;
-  TriangleMesh mesh;
-  for (int ring = 0; ring <= kRings; ++ring) {
-    const double latitude = M_PI * ring / kRings;  // from the pole at -x
-    for (int side = 0; side < kSides; ++side) {
-      const Vector3 normal = -std::cos(latitude) * Vector3::UnitX() + std::sin(latitude) * radial(side);
-      mesh.add(sphere.radius * normal, normal);
-    }
-  }
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int side = 0; side < kSides; ++side) {
-      const int next = (side + 1) % kSides, here = ring * kSides, there = here + kSides;
-      mesh.add_quad(here + side, here + next, there + next, there + side);
-    }
-  return mesh;
+  return {pictures::sphere_surface(sphere, kSides, kSides / 2)};
 }
 
 void draw(const TriangleMesh& mesh, visualization_msgs::Marker& marker) {

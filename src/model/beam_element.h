@@ -1,5 +1,5 @@
 #pragma once
-/// Constant data of geometrically exact beam elements.
+/// Constant data of geometrically exact beam elements, and loops over them.
 
 #include <array>
 #include <tuple>
@@ -22,8 +22,8 @@ struct BeamElement {
 
   struct StiffnessPoint {
     NodeWeights shape, derivative;  ///< I^i, dI^i/ds [-, 1/m]
-    double weight;                  ///< of the integral over s [m]
-    Vector6 reference_strain;       ///< {Lambda_0^T r_0', Upsilon_0}: the undeformed line is free of stress
+    double weight;                  ///< quadrature weight over s [m]
+    Vector6 reference_strain;       ///< {Lambda_0^T r_0', Upsilon_0} of the undeformed line, which is free of stress
     Matrix6 stiffness;              ///< of the section, about the mass centroid
   };
   struct MassPoint {
@@ -33,31 +33,31 @@ struct BeamElement {
   };
 
   std::array<int, Nodes> nodes;
-  int first_stiffness_point = 0, first_mass_point = 0;  ///< into the per-point arrays of Workspace and State
+  int first_stiffness_point = 0, first_mass_point = 0;  ///< indices of its first points in per-point arrays
   std::array<StiffnessPoint, kStiffnessPoints> stiffness_points;
   std::array<MassPoint, kMassPoints> mass_points;
   Eigen::Matrix<double, Nodes, Nodes> mass;  ///< int I^i I^j mass ds [kg]
   double stiffness_damping = 0;              ///< eta of F += eta D C D d(strain)/dt [s]
-  Vector6 damping_scale = Vector6::Ones();   ///< diagonal of D, at most 1: eta of a strain is eta times its square
-  double mass_damping = 0;                   ///< [1/s]
+  Vector6 damping_scale = Vector6::Ones();   ///< diagonal of D, at most 1: strain i has eta D_ii^2
+  double mass_damping = 0;                   ///< coefficient of mass-proportional damping [1/s]
   int prestrain = -1;                        ///< index into Model::prestrains; -1: none
-  int first_block = 0;                       ///< into TangentBackend::element_block, then [i * Nodes + j]
+  int first_block = 0;                       ///< block of nodes i, j in TangentBackend: first_block + i * Nodes + j
 };
 
-/// Whether all strains have the same eta.
+/// Whether all strains have the same damping coefficient eta.
 template <int Nodes>
 bool is_damped_evenly(const BeamElement<Nodes>& element) {
   return element.damping_scale == Vector6::Ones();
 }
 
-/// D C D of a stiffness point.
+/// Returns D C D of a stiffness point, with the section's stiffness C.
 template <int Nodes>
 Matrix6 damped_stiffness(const BeamElement<Nodes>& element, int point) {
   const auto scale = element.damping_scale.asDiagonal();
   return scale * element.stiffness_points[point].stiffness * scale;
 }
 
-/// The element with D C D in place of C.
+/// Returns the element with D C D in place of the stiffness C.
 template <int Nodes>
 BeamElement<Nodes> with_damped_stiffness(BeamElement<Nodes> element) {
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k)
@@ -65,7 +65,7 @@ BeamElement<Nodes> with_damped_stiffness(BeamElement<Nodes> element) {
   return element;
 }
 
-/// Elements of equal order, contiguous.
+/// Elements of equal order, contiguous in memory.
 template <int Nodes>
 struct BeamGroup {
   static constexpr int kNodes = Nodes;
@@ -74,7 +74,7 @@ struct BeamGroup {
 
 using BeamGroups = std::tuple<BeamGroup<2>, BeamGroup<3>, BeamGroup<4>, BeamGroup<5>>;
 
-/// Calls visit(group) for each order: the one dispatch on the number of nodes.
+/// Calls visit(group) for each order. Code that depends on the number of nodes is dispatched only here.
 template <class Groups, class Visitor>
 void for_each_group(Groups& groups, Visitor&& visit) {
   std::apply([&](auto&... group) { (visit(group), ...); }, groups);

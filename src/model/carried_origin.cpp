@@ -15,7 +15,7 @@ void carry_origin(const Model& model, State& state) {
   if (!model.floats) return;
   const Vector3& place = state.nodes[model.joints.front().slave].position;
   if (place.norm() <= kFarInSizes * model.length_scale) return;
-  // Multiples of a power of two: differences from them are exact.
+  // Move the origin by multiples of a power of two, so that subtracting them is exact.
   const double unit = std::exp2(std::ceil(std::log2(model.length_scale)));
   const Vector3 way = unit * (place / unit).array().round();
   state.origin += way;

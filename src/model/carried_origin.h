@@ -1,21 +1,23 @@
 #pragma once
-/// The origin of positions, which moves along with a mechanism that hangs on nothing.
+/// Moves the origin of positions along with a mechanism that is not attached to the world (Model::floats), so that
+/// positions keep their precision far away.
 
 #include "model/model.h"
 #include "model/state.h"
 
 namespace flexarm {
 
-/// A mechanism that is so many times as far from an origin as it is large has an origin of its own.
+/// The origin moves if the distance of the mechanism exceeds this multiple of the mechanism's size.
 constexpr double kFarInSizes = 100;
 
-/// Of positions in a state, in the world [m].
+/// Returns the origin of the positions in a state, in world coordinates [m].
 inline Vector3 world_origin(const Model& model, const State& state) {
   return model.origin + state.origin;
 }
-/// That of state.origin in a released translation of `joint`, in its frame [m].
+/// Returns state.origin in the frame of a free joint on the world: its released translation is relative to that [m].
+/// Zero for other joints.
 Vector3 carried_translation(const JointMap& joint, const State& state);
-/// Takes the origin along where a mechanism whose Model::floats has gone far from it. No digit of a position is lost.
+/// Moves the origin if Model::floats is set and the mechanism is far from it (kFarInSizes). Positions lose no digits.
 void carry_origin(const Model& model, State& state);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbering: which scalars of the mechanism are unknowns.
+/// Numbers the scalars of a mechanism, and tells which of them are unknowns.
 
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace flexarm {
 
-/// Variables are blocks of scalars: first the nodes (6 scalars: displacement, spin), then the joints (their released
-/// coordinates), those that are held last, then the closures of loops (their multipliers). A slave node, a prescribed
-/// and a mimicking coordinate have no equation of their own.
+/// A variable is a block of scalars. The variables are, in this order: nodes (6 scalars: displacement, spin), joints
+/// (their released coordinates; held joints last), and loop closures (their multipliers). Slave nodes, and prescribed
+/// and mimicking coordinates, have no equations of their own.
 struct DegreesOfFreedom {
   explicit DegreesOfFreedom(const Model& model);
 
@@ -21,22 +21,22 @@ struct DegreesOfFreedom {
   }
 
   int node_count = 0, joint_count = 0;  ///< held joints included
-  std::vector<int> size;                ///< per variable: scalars
+  std::vector<int> size;                ///< per variable: number of its scalars
   std::vector<int> first;               ///< per variable: index of its first scalar
   std::vector<int> equation;            ///< per scalar: equation, or -1
-  /// Scalars that are unknowns, where their equations follow one another as they do.
+  /// A run of consecutive scalars that are all unknowns; their equations are consecutive, too.
   struct Run {
     int scalar, equation, count;
   };
   std::vector<Run> runs;
   int scalar_count = 0;
-  int unknowns = 0;              ///< equations
-  std::vector<int> slave_joint;  ///< per node: joint of which it is the slave, or -1
+  int unknowns = 0;              ///< number of equations
+  std::vector<int> slave_joint;  ///< per node: the joint whose slave it is, or -1
 
-  /// A coordinate that follows another one; both are alone in their variables.
+  /// A coordinate that follows another one. Each of both is the only scalar of its variable.
   struct Mimic {
     int slave_variable, master_variable;
-    int coordinate;  ///< the following one
+    int coordinate;  ///< index of the follower
   };
   std::vector<Mimic> mimics;  ///< an entry's master is never the slave of an earlier entry
 };

@@ -9,6 +9,22 @@ void find_nodes(const ForceElement& element, const ForceStart& start, std::vecto
   nodes.resize(element.find_nodes(start, nodes.data()));
 }
 
+std::size_t memory_begin(const ForceElementList& elements, std::size_t index) {
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < index; ++k) begin += elements.at(k)->memory_size();
+  return begin;
+}
+
+std::vector<const double*> memories_of(const ForceElementList& elements, const std::vector<double>& force_memory) {
+  std::vector<const double*> memories;
+  const double* memory = force_memory.data();
+  for (const auto& element : elements) {
+    memories.push_back(memory);
+    memory += element->memory_size();
+  }
+  return memories;
+}
+
 std::vector<std::vector<int>> nodes_of(const ForceElementList& elements, const State& state) {
   std::vector<std::vector<int>> nodes(elements.size());
   if (elements.empty()) return nodes;

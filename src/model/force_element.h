@@ -1,5 +1,6 @@
 #pragma once
-/// Elements that act between points of the mechanism: one class for each kind.
+/// The interface of force elements, which act between points of the mechanism, such as springs and contacts. Each kind
+/// is a class derived from ForceElement.
 
 #include <algorithm>
 #include <functional>
@@ -15,71 +16,81 @@ namespace flexarm {
 
 struct State;
 
-/// A point fixed to a node, or to the world (-1).
+/// A point fixed to a node, or to the world (node -1).
 struct NodePoint {
   int node = -1;
-  Vector3 arm = Vector3::Zero();  ///< in the node's frame, or where it is in the world [m]
+  Vector3 arm = Vector3::Zero();                    ///< from the node, in its frame; or the position in the world [m]
+  Quaternion orientation = Quaternion::Identity();  ///< of the link's frame, in the node's frame or in the world
 };
 
-/// The beginning of a step, or what an equilibrium or small motions are about.
+/// The configuration at the beginning of a step, or the one about which an equilibrium or small motions are computed.
 struct ForceStart {
   const std::vector<NodePose>& poses;      ///< of all nodes
   const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes, world axes
-  double duration = 0;                     ///< of the step [s]; 0: there is none
+  double duration = 0;                     ///< of the step [s]; 0: no step
 };
 
-/// The step, or the equilibrium, that a force element is asked about.
+/// The value of a function of time over a step. In an equilibrium all three are the same.
+struct FunctionStep {
+  double begin = 0, end = 0;
+  double mean = 0;  ///< only for elements that use means, see ForceElement::uses_means()
+};
+
+/// The step or equilibrium for which a force element is evaluated.
 struct ForceStep {
   const std::vector<NodePose>& begin;  ///< of all nodes
   const std::vector<NodePose>& end;
-  const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes at the beginning, world axes; not of equilibria
-  double duration = 0;                     ///< [s]; 0: an equilibrium, in which nothing has a rate
-  bool at_end = false;                     ///< forces are those at the end; else means whose work is exact
-  double gamma = 1;                        ///< of rates, as CoordinateStep has it
-  double refinement = 1;                   ///< by how much finer than usual what happens fast is to be resolved
-  const double* memory = nullptr;          ///< at the beginning, memory_size() numbers
-  double* new_memory = nullptr;            ///< at the end, as many, to be written
+  const std::vector<Vector6>& velocities;   ///< {v, w} of all nodes at the beginning, world axes; not in equilibria
+  double duration = 0;                      ///< [s]; 0: an equilibrium, in which all rates are zero
+  bool at_end = false;                      ///< forces are those at the end; else means over the step, with exact work
+  double gamma = 1;                         ///< of the rule for rates, see CoordinateStep
+  double refinement = 1;                    ///< factor by which fast events are resolved more finely than by default
+  double load_factor = 1;                   ///< by which an equilibrium is asked for a part of the given forces
+  const FunctionStep* functions = nullptr;  ///< one for each of functions()
+  const double* memory = nullptr;           ///< the element's memory at the beginning, memory_size() numbers
+  double* new_memory = nullptr;             ///< output: the memory at the end, memory_size() numbers
 };
 
-/// What a force element adds to the balance of a step. Of the nodes it acts on, in their order: {force, moment} and
-/// {displacement, spin} of each, world axes.
+/// The contribution of a force element to the balance of a step. For each node that it acts on, in their order:
+/// residual rows {force, moment} and tangent columns {displacement, spin}, world axes.
 struct ForceAction {
-  Eigen::Map<Eigen::VectorXd> residual;  ///< to be set: less the forces on the nodes
-  Eigen::Map<Eigen::MatrixXd> tangent;   ///< to be set: its derivative by motions at the end; no rows: not asked for
-  double dissipated = 0;                 ///< over the step [J]
-  double work = 0;                       ///< done on the mechanism from outside, over the step [J]
+  Eigen::Map<Eigen::VectorXd> residual;  ///< output: minus the forces on the nodes
+  Eigen::Map<Eigen::MatrixXd> tangent;   ///< output: its derivative by motions at the end; no rows: not needed
+  double dissipated = 0;                 ///< output: dissipated over the step [J]
+  double work = 0;                       ///< output: work done on the mechanism from outside over the step [J]
 };
 
-/// A force element as springs and dampers of a few measures of its nodes' poses: a length, a gap. Its forces are those
-/// of tensions, rows^T tension.
+/// A force element for small motions: springs and dampers that act on a few scalar measures of the poses of its nodes,
+/// such as a length or a gap. Each measure has a tension; the forces on the nodes are rows^T tension.
 struct ForceMeasures {
-  Eigen::MatrixXd rows;       ///< per measure: its derivative by {displacement, spin} of the nodes, world axes
-  Eigen::MatrixXd stiffness;  ///< of tensions by measures; positive semi-definite
+  Eigen::MatrixXd rows;       ///< per measure: derivative with respect to {displacement, spin} of the nodes, world axes
+  Eigen::MatrixXd stiffness;  ///< derivative of tensions with respect to measures; positive semidefinite
 };
+/// The tensions of a force element's dampers.
 struct DamperTensions {
   Eigen::VectorXd tension;
-  Eigen::MatrixXd slope;  ///< by the measures' rates
+  Eigen::MatrixXd slope;  ///< derivative with respect to the measures' rates
 };
 
-/// A distance within which nodes may move before an element can act. When the fastest node has gone a way and another
-/// one has turned by an angle, by_way * way + by_turn * angle of it are used up.
+/// A bound on motions before which a force element cannot act. If no node has moved farther than `way` and none has
+/// turned by more than `angle`, at most by_way * way + by_turn * angle of `size` is used up.
 struct ForceRoom {
-  double size = 0;     ///< [m]; 0 or less: it may act in the next step
-  double by_way = 0;   ///< of any node, no unit
-  double by_turn = 0;  ///< of any node [m/rad]
+  double size = 0;     ///< [m]; 0 or less: the element may act in the next step
+  double by_way = 0;   ///< [-]
+  double by_turn = 0;  ///< [m/rad]
 };
 
-/// A number that is put out: the last part of its column's name, and its unit.
+/// A number of an element for output: the last part of its column's name, and its unit.
 struct ForceOutput {
   const char* name;
   const char* unit;
 };
 
-/// What a contact has to touch with: its points, and the law of each.
+/// The number of contact points of a contact, and the law of each.
 struct TouchLaw {
-  std::size_t points = 0;                                           ///< 0: it is no contact
+  std::size_t points = 0;                                           ///< 0: the element is no contact
   double stiffness = 0;                                             ///< of shallow penetrations [N/m]
-  double restitution = 1, friction = 0, spinning = 0, rolling = 0;  ///< couples: of the push [m]
+  double restitution = 1, friction = 0, spinning = 0, rolling = 0;  ///< the last two: couple per normal force [m]
 };
 
 /// Poses and velocities of all nodes for output.
@@ -87,94 +98,116 @@ struct ForceMotion {
   const State& state;
   const std::vector<Vector6>& velocities;  ///< {v, w}, world axes
   const double* memory;                    ///< the element's own part of State::force_memory
+  const double* function_rates = nullptr;  ///< derivatives of functions() at the state's time [1/s]; for put_out()
 };
 
-/// A point at which an element's first link touches its second one, see ForceElement::links(), at an instant: as the
-/// law has it there, with the friction that the last step has left.
+/// A point at which an element's first link touches its second one (see ForceElement::links()) at an instant. The
+/// normal force is that of the contact law; friction is that of the last step.
 struct TouchingPoint {
-  Vector3 position;                  ///< on the surface of the first, from where those of nodes are, world axes [m]
-  Vector3 normal;                    ///< unit, from the second to the first
-  Vector3 push, friction;            ///< on the first, along the normal and across it [N]
-  Vector3 couple = Vector3::Zero();  ///< on the first, which resists to spinning and rolling [N m]
-  double gap = 0;                    ///< < 0: so deep is one in the other [m]
+  Vector3 position;                  ///< on the surface of the first, same origin as nodes' positions, world axes [m]
+  Vector3 normal;                    ///< unit vector from the second to the first
+  Vector3 push, friction;            ///< forces on the first, along the normal and across it [N]
+  Vector3 couple = Vector3::Zero();  ///< on the first; resists spinning and rolling [N m]
+  double gap = 0;                    ///< < 0: minus the penetration [m]
 };
 using TouchingPointTaker = std::function<void(const TouchingPoint&)>;
 
-/// What acts between points of the mechanism. Constant, as the model is whose part it is; what it remembers is in the
-/// state. Steps, energies, equilibria, modes, linear models, sensitivities and results know force elements by this
-/// class alone.
+/// A force element: it acts between points of the mechanism. It is constant, like the model that it belongs to; its
+/// memory is part of the State. Steps, energies, equilibria, modes, linear models, sensitivities and results use only
+/// this interface.
 class ForceElement {
  public:
-  /// `reach`: all nodes that it may ever act on, each once.
-  ForceElement(std::string name, std::vector<int> reach) : name_(std::move(name)), reach_(std::move(reach)) {}
+  /// `reach`: all nodes on which the element may ever act, each once. `functions`: see functions().
+  ForceElement(std::string name, std::vector<int> reach, std::vector<int> functions = {})
+      : name_(std::move(name)), reach_(std::move(reach)), functions_(std::move(functions)) {}
   virtual ~ForceElement() = default;
 
-  /// As the scene's element is called: "spring".
+  /// Returns the tag of the element in the scene, such as "spring".
   virtual const char* kind() const = 0;
-  /// Empty: it has none, and no columns.
+  /// Returns the element's name. An element without a name (empty) has no columns in results.
   const std::string& name() const { return name_; }
-  /// What `flexarm check` says of one that a ForceElementDescription has made, but for its kind, name and links.
+  /// The functions of time that the element uses: indices into Model::histories. The element does not evaluate them
+  /// itself, since threads share it. It gets their values, and keeps those that it needs between steps in its memory.
+  const std::vector<int>& functions() const { return functions_; }
+  /// Whether the element uses FunctionStep::mean, which may take thousands of evaluations where a function has kinks.
+  virtual bool uses_means() const { return false; }
+  /// Returns a description for `flexarm check`, without kind, name and links. For elements that a
+  /// ForceElementDescription has made.
   virtual std::string description() const { return {}; }
-  /// Names of the links that it acts between, where it comes of no ForceElementDescription, which knows them. All
-  /// contacts of a pair have them in the same order.
+  /// Returns the names of the links between which the element acts. Empty for elements that a ForceElementDescription
+  /// has made, since that knows them. All contacts of a pair of links have them in the same order.
   virtual std::vector<std::string> links() const { return {}; }
 
-  // ---- where
+  // ---- the nodes on which the element acts
   const std::vector<int>& reach() const { return reach_; }
-  /// Most nodes that it acts on in one step. Fewer than its reach where these change from step to step.
+  /// Returns the largest number of nodes on which the element acts in one step. Less than the size of reach() if the
+  /// nodes change from step to step.
   virtual int most_nodes() const { return static_cast<int>(reach_.size()); }
-  /// Writes those on which it may act in a step that begins so, each once; returns how many. Without a duration: all
-  /// of its reach.
+  /// Finds the nodes on which the element may act in a step that begins with `start`. Writes them to `nodes`, each
+  /// once, and returns their number. If the duration is 0, these are all nodes of reach().
   virtual int find_nodes(const ForceStart& start, int* nodes) const {
     static_cast<void>(start);
     std::copy(reach_.begin(), reach_.end(), nodes);
     return static_cast<int>(reach_.size());
   }
 
-  /// Room from the poses of `start` on. Until it is used up find_nodes() finds none, and needs_halves() is false. What
-  /// a step that begins adds to the motion is taken as twice its duration at the speeds of its beginning; what a step
-  /// that has been solved adds is its motion.
+  /// Returns the room from the poses of `start` on. Until it is used up, find_nodes() finds no nodes and needs_halves()
+  /// is false. The caller adds up the motion: for a step that begins, twice its duration times the speeds at its
+  /// beginning; for a step that has been solved, its actual motion.
   virtual ForceRoom room(const ForceStart& start) const {
     static_cast<void>(start);
     return {};
   }
 
-  // ---- what it does. `nodes`: as find_nodes() has written them. What acts on none and remembers nothing is not asked
+  // ---- forces and energy
+  // `nodes`: as find_nodes() has written them.
+
+  /// Computes the contribution to the balance of a step. Not called if the element acts on no nodes and has no memory.
   virtual void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const = 0;
-  /// True where a step that has been solved is too long for what happens in it: it is done again by halves. Also of an
-  /// element that acts on no nodes in the step, but would have to.
+  /// Whether a solved step is too long for the events in it, so that it must be repeated in halves. Also true if the
+  /// element acts on no nodes in this step, but should.
   virtual bool needs_halves(const ForceStep& step, const int* nodes, int count) const {
     static_cast<void>(step), static_cast<void>(nodes), static_cast<void>(count);
     return false;
   }
-  /// True where something is hit in steps in which it acts on nodes: they may have to be halved more often than others.
+  /// Whether bodies hit each other in steps in which the element acts on nodes. Such steps may be halved more often.
   virtual bool hits() const { return false; }
-  /// What it stores [J]. `memory`: its own part of State::force_memory.
+  /// Returns the stored energy [J]. `memory`: the element's own part of State::force_memory.
   virtual double energy(const State& state, const double* memory) const = 0;
-  virtual ForceMeasures measures(const State& state, const int* nodes) const = 0;
-  /// Of rates of the measures, one for each.
-  virtual DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const = 0;
-  /// Numbers of State::force_memory that it has for itself.
+  virtual ForceMeasures measures(const State& state, const double* memory, const int* nodes) const = 0;
+  /// Returns the tensions of the dampers. `rates`: of the measures, in their order.
+  virtual DamperTensions dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const = 0;
+  /// Returns how many numbers of State::force_memory belong to the element.
   virtual int memory_size() const { return 0; }
-  /// Writes those that are not zero at a start to which no motion has led: that of a scene, or one that was set.
-  virtual void start(const State& state, double* memory) const { static_cast<void>(state), static_cast<void>(memory); }
-  /// Whether any of these, at `memory`, is not zero.
+  /// Writes the numbers of the memory that are not zero in an initial state: the scene's, or one that a program has
+  /// set. `functions`: values of functions() at the state's time.
+  virtual void start(const State& state, const double* functions, double* memory) const {
+    static_cast<void>(state), static_cast<void>(functions), static_cast<void>(memory);
+  }
+  /// Whether any number of the element's memory is not zero.
   bool remembers(const double* memory) const {
     return std::any_of(memory, memory + memory_size(), [](double number) { return number != 0; });
   }
 
-  /// False where it has no forces at the ends of steps, as the Newmark family asks for them, and steps backwards, as
-  /// compositions have them, would undo what it dissipates.
+  /// Whether the element works with all schemes. False if it cannot give forces at the end of a step, which the Newmark
+  /// family needs, and does not admit backward steps (of composition schemes), which would undo dissipation.
   virtual bool suits_all_schemes() const { return true; }
 
-  // ---- what it puts out
+  // ---- output
   virtual std::vector<ForceOutput> outputs() const { return {}; }
-  /// Appends their values.
+  /// Appends the values of outputs().
   virtual void put_out(const ForceMotion& motion, std::vector<double>& values) const {
     static_cast<void>(motion), static_cast<void>(values);
   }
-  /// Of a contact, whose links() are two: calls `take` of each point that touches. Returns the smallest gap between
-  /// both links, < 0 where they touch [m].
+  /// Appends the points of the line along which the element acts, for pictures: same origin as nodes' positions, world
+  /// axes [m]. Nothing if there is no such line.
+  virtual void put_line(const ForceMotion& motion, std::vector<Vector3>& points) const {
+    static_cast<void>(motion), static_cast<void>(points);
+  }
+  /// Returns the largest number of points that put_line() may append.
+  virtual std::size_t most_line_points() const { return 0; }
+  /// For a contact, which has two links(): calls `take` for each touching point. Returns the smallest gap between the
+  /// two links [m], < 0 if they touch.
   virtual double touch(const ForceMotion& motion, const TouchingPointTaker& take) const {
     static_cast<void>(motion), static_cast<void>(take);
     return std::numeric_limits<double>::infinity();
@@ -187,14 +220,19 @@ class ForceElement {
 
  private:
   std::string name_;
-  std::vector<int> reach_;
+  std::vector<int> reach_, functions_;
 };
 
 using ForceElementList = std::vector<std::shared_ptr<const ForceElement>>;
 
-/// On which it acts in a step that begins so, in the memory of `nodes`; allocates the first time alone.
+/// Sets `nodes` to the nodes on which the element acts in a step that begins with `start`. Only the first call
+/// allocates.
 void find_nodes(const ForceElement& element, const ForceStart& start, std::vector<int>& nodes);
-/// On which each acts in small motions about a state.
+/// Returns where the memory of element `index` begins in State::force_memory.
+std::size_t memory_begin(const ForceElementList& elements, std::size_t index);
+/// Returns where the memory of each element begins in State::force_memory.
+std::vector<const double*> memories_of(const ForceElementList& elements, const std::vector<double>& force_memory);
+/// Returns the nodes on which each element acts in small motions about a state.
 std::vector<std::vector<int>> nodes_of(const ForceElementList& elements, const State& state);
 
 }  // namespace flexarm

@@ -6,7 +6,7 @@
 
 namespace flexarm {
 namespace {
-/// Largest sum of the weights' magnitudes; extrapolation of order two over equal steps has 3 + 3 + 1.
+/// Largest sum of the magnitudes of the weights. For comparison: order two over equal steps has 3 + 3 + 1 = 7.
 constexpr double kLargestSum = 7.5;
 }  // namespace
 
@@ -29,7 +29,8 @@ IncrementHistory::Weights IncrementHistory::weights(int order, int first, double
   assert(order >= kNoMotion && order <= kHighestOrder && first >= 0);
   Weights out{};
   if (first + order >= count) return out;
-  // Times of the ends, and where the oldest step begins; the increment to come is the polynomial's from 0 to `step`.
+  // Times of the ends of the steps, newest first, and of the beginning of the oldest one; the newest end is at time 0.
+  // The predicted increment is that of the interpolation polynomial from 0 to `step`.
   std::array<double, kLength + 1> times{};
   for (int i = 0; i <= order; ++i) times[i + 1] = times[i] - steps[first + i];
   double sum = 0;
@@ -37,7 +38,7 @@ IncrementHistory::Weights IncrementHistory::weights(int order, int first, double
     double lagrange = 1;
     for (int k = 0; k <= order + 1; ++k)
       if (k != j) lagrange *= (step - times[k]) / (times[j] - times[k]);
-    // The place at times[j] is minus the sum of the increments since.
+    // Relative to time 0, the position at times[j] is minus the sum of all later increments.
     for (int i = 0; i < j; ++i) out[first + i] -= lagrange;
   }
   for (const double weight : out) sum += std::abs(weight);

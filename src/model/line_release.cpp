@@ -10,7 +10,7 @@ double clamped(const SlideLine& line, double arc_length) {
   return std::clamp(arc_length, line.begin(), line.end());
 }
 
-/// Calls visit(joint) for the joints from `last` to the slide that carries them.
+/// Calls visit(joint) for the chain of joints from `last` back to the slide that carries them.
 template <class Visit>
 void for_each_in_chain(const Model& model, int slide, int last, const Visit& visit) {
   for (int j = last;;) {
@@ -41,7 +41,7 @@ Model model_after_release(Model model, const State& state, int slide) {
       Coordinate& coordinate = model.coordinates[model.first_coordinate[j] + k];
       const double value = state.released[j].displacement[k % 3];
       coordinate.limit.reset();
-      if (coordinate.mimicked >= 0) continue;  // it stays with the one that it follows
+      if (coordinate.mimicked >= 0) continue;  // it keeps following its master
       coordinate.motion = static_cast<int>(model.histories.size());
       model.histories.emplace_back(j == slide ? clamped(model.slide_lines[joint.line], value) : value);
     }

@@ -1,24 +1,25 @@
 #pragma once
-/// A force and a moment on a node.
+/// A load on a node: a force and a moment.
 
 #include "flexarm/math/pose.h"
 #include "flexarm/model/results.h"
 
 namespace flexarm {
 
-/// A load on a node: force at the material point `arm` of its frame, and a moment; scaled by history(t). Wrenches may
-/// pull on that point besides.
+/// A force at the material point `arm` of the node's frame, and a moment, both scaled by history(t). Wrenches of a
+/// state may also have a spring that pulls on that point.
 struct NodalLoad {
   int node = -1;
-  Vector3 arm = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();  ///< world or node frame
-  bool follows = false;  ///< force and moment turn with the node; else they are fixed in the world
-  int history = 0;       ///< index into Model::histories; a wrench of State::wrenches has none
-  Pull pull = {};        ///< only of State::wrenches
-  int link = -1;         ///< on which it acts; index into Model::links
+  /// `arm` in the node's frame [m]; `force` [N] and `moment` [N m] in world axes or in the node's frame, see `follows`.
+  Vector3 arm = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();
+  bool follows = false;  ///< force and moment turn with the node; else their directions are fixed in the world
+  int history = 0;       ///< index into Model::histories; not used in State::wrenches
+  Pull pull = {};        ///< spring of the load; only in State::wrenches
+  int link = -1;         ///< link on which it acts, index into Model::links
 };
 
-/// A force, and a moment about `point` of a link whose frame seen from the node is `link`. Their axes are the world's,
-/// or those of the link where the load follows it.
+/// Returns a load on a link: a force at `point` (in the link's frame), and a moment. `link`: pose of the link's frame
+/// in the node's frame. Force and moment are in world axes, or in the link's axes if the load follows the link.
 inline NodalLoad load_on(int node, const Pose& link, const Vector3& point, const Vector3& force, const Vector3& moment,
                          bool follows) {
   const Quaternion turn = follows ? link.orientation : Quaternion::Identity();

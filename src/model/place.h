@@ -1,5 +1,6 @@
 #pragma once
-/// The names by which a user knows parts of a model. These functions search, so use them rarely.
+/// Finds out which part of the scene an element, node, joint or loop of the model belongs to, for messages. These
+/// functions search, so use them rarely.
 
 #include "flexarm/model/results.h"
 #include "model/model.h"
@@ -7,11 +8,11 @@
 
 namespace flexarm {
 
-/// Of an element, by its index in the group of its order; where `node` is.
+/// Returns the place of an element. `index`: in the group of its order; `node`: gives the position.
 StepResult::Place place_of_element(const Model& model, const State& state, int order, int index, int node);
-/// The first element that has the node, or the rigid link that is fixed to it.
+/// Returns the place of the first element that has the node, or else of the rigid link that is fixed to it.
 StepResult::Place place_of_node(const Model& model, const State& state, int node);
-/// The coordinate; where the joint has none, what it holds.
+/// Returns the place of the joint's slave, and the coordinate, if the joint has one with this component.
 StepResult::Place place_of_joint(const Model& model, const State& state, int joint, int component = 0);
 StepResult::Place place_of_loop(const Model& model, const State& state, int loop);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The plane in which a mechanism moves, if there is one (docs/notes/planar.md).
+/// Data of the plane in which a planar mechanism moves, and projections into it (docs/notes/planar.md).
 
 #include <string>
 #include <vector>
@@ -10,20 +10,22 @@ namespace flexarm {
 
 using Vector2 = Eigen::Vector2d;
 
-/// Where a node stands in the plane: its position, and half the angle by which it is turned from PlaneOfMotion::frames.
+/// The pose of a node in the plane: its position, and half of its angle of rotation relative to PlaneOfMotion::frames.
 struct alignas(32) PlanarPose {
   double x = 0, y = 0;          ///< [m]
-  double cosine = 1, sine = 0;  ///< of half the angle; both signs are the same pose, a turn apart
+  double cosine = 1, sine = 0;  ///< of half the angle; both with the opposite sign are the same pose, one turn further
 };
 
-/// A plane, with axes of its own, or one parallel to it, in which all nodes stay that start there. What lies in it are
-/// positions and forces; what points along the normal are turns and moments. {first, second, normal} is right-handed.
+/// A plane with axes of its own. A planar mechanism that starts in this plane, or in one parallel to it, stays there.
+/// Displacements, velocities and forces lie in the plane; rotations and moments point along the normal. {first, second,
+/// normal} is right-handed.
 struct PlaneOfMotion {
   Vector3 first = Vector3::UnitX(), second = Vector3::UnitY(), normal = Vector3::UnitZ();
-  std::vector<Quaternion> frames;  ///< per node: a frame of it from which it is turned about the normal alone; nodes of
-                                   ///< an element have the same one
+  /// Per node: a reference orientation from which the node only rotates about the normal. All nodes of an element have
+  /// the same one.
+  std::vector<Quaternion> frames;
 
-  /// {f, phi} in the world as {f_1, f_2, phi_n}, and back.
+  /// projected() turns {f, phi} in world axes into {f_1, f_2, phi_n}; expanded() does the reverse.
   template <class V>
   Vector3 projected(const Eigen::MatrixBase<V>& wrench) const {
     const Vector3 force = wrench.template head<3>(), moment = wrench.template tail<3>();
@@ -42,10 +44,10 @@ struct PlaneOfMotion {
     const Quaternion turn = orientation * frames[node].conjugate();
     return {first.dot(position), second.dot(position), turn.w(), normal.dot(turn.vec())};
   }
-  /// The normal, in the node's frame.
+  /// Returns the normal in the node's frame.
   Vector3 material_normal(int node) const { return frames[node].conjugate() * normal; }
-  /// {first, second} for Gamma, {normal} for K, as the section frames of an element see them: strains are `basis` times
-  /// {Gamma_1, Gamma_2, K}.
+  /// Returns the matrix that turns planar strains {Gamma_1, Gamma_2, K} into strains {Gamma, K} in section axes. Its
+  /// columns are the plane's axes for Gamma and the normal for K. `node`: any node of the element.
   Eigen::Matrix<double, 6, 3> strain_basis(int node) const {
     Eigen::Matrix<double, 6, 3> basis = Eigen::Matrix<double, 6, 3>::Zero();
     const Quaternion to_material = frames[node].conjugate();

@@ -13,10 +13,11 @@
 namespace flexarm {
 namespace {
 
-/// What is computed from a scene's numbers differs from what they mean by some round-off.
+/// Relative tolerance for round-off in numbers that are computed from the scene's.
 constexpr double kRoundOff = 1e-12;
 
-/// Whether a vector has no component along a unit vector, or no other one, beside its own length or a larger one.
+/// is_normal_to(): whether a vector is normal to a unit vector; is_along(): whether it is parallel to it. Both up to
+/// round-off, relative to the vector's length or to `scale` if that is larger.
 bool is_normal_to(const Vector3& unit, const Vector3& vector, double scale = 0) {
   return std::abs(unit.dot(vector)) <= kRoundOff * std::max(vector.norm(), scale);
 }
@@ -28,19 +29,20 @@ Matrix3 rotation_of(const Model& model, int node) {
   return node >= 0 ? model.nodes[node].rotation : Matrix3::Identity();
 }
 
-/// Of a joint's frame at the start: its axes of a Scalar are those of the master.
+/// Turns a vector from a joint's master frame into world axes, in the initial configuration. The axes of a Scalar joint
+/// are given in that frame.
 const Vector3 to_world(const Model& model, const JointMap& joint, const Vector3& in_master) {
   return rotation_of(model, joint.master) * in_master;
 }
 
-/// In world axes: of a load that follows its node, those of the start.
+/// Turns a load's vector into world axes. For a load that follows its node, the node has its initial orientation.
 Vector3 to_world(const Model& model, const NodalLoad& load, const Vector3& vector) {
   return load.follows ? Vector3(model.nodes[load.node].rotation * vector) : vector;
 }
 
 // ---------------------------------------------------------------- which plane
 
-/// What can only point along the normal, and what can only lie in the plane.
+/// Unit vectors that restrict the plane: `normals` must be along its normal, `directions` must lie in it.
 struct Hints {
   std::vector<Vector3> normals, directions;
 };
@@ -74,7 +76,7 @@ Hints hints_of(const Model& model) {
   return hints;
 }
 
-/// A unit vector, of axes in which numbers are exact where it is nearly one of them.
+/// Normalises a vector. If it equals a coordinate axis up to round-off, returns exactly that axis.
 Vector3 tidied(const Vector3& vector) {
   Vector3 unit = vector.normalized();
   for (int k = 0; k < 3; ++k)
@@ -83,7 +85,7 @@ Vector3 tidied(const Vector3& vector) {
   return unit;
 }
 
-/// The only normal that there can be, or one that may be where all lies in one line.
+/// Returns the only possible normal. If everything lies on one line, returns one of the possible normals.
 Vector3 normal_of(const Model& model) {
   const Hints hints = hints_of(model);
   if (!hints.normals.empty()) return tidied(hints.normals.front());
@@ -93,7 +95,7 @@ Vector3 normal_of(const Model& model) {
   if (best.norm() > kRoundOff) return tidied(best);
   const Vector3 line = hints.directions.empty() ? Vector3(Vector3::UnitX()) : hints.directions.front();
   double smallest = 2;
-  for (int k = 0; k < 3; ++k) {  // an axis of a section
+  for (int k = 0; k < 3; ++k) {  // choose the section axis that is most nearly normal to the line
     const Vector3 axis = model.nodes.back().rotation.col(k);
     if (std::abs(line.dot(axis)) >= smallest) continue;
     smallest = std::abs(line.dot(axis));
@@ -111,7 +113,7 @@ void set_axes(const Vector3& normal, PlaneOfMotion& plane) {
   plane.second = normal.cross(plane.first);
 }
 
-/// One frame for all nodes that elements connect.
+/// Returns the reference orientation of each node (PlaneOfMotion::frames). Nodes that elements connect share one.
 std::vector<Quaternion> frames_of(const Model& model) {
   std::vector<int> like(model.nodes.size());
   std::iota(like.begin(), like.end(), 0);
@@ -128,9 +130,10 @@ std::vector<Quaternion> frames_of(const Model& model) {
   return frames;
 }
 
-// ---------------------------------------------------------------- what is out of it
+// ---------------------------------------------------------------- reasons why the motion is not planar
 
-/// Whether a section's stiffness couples strains in the plane with none out of it. `rest`: the latter's basis.
+/// Whether a section's stiffness does not couple strains in the plane with strains out of it. `basis`: of strains in
+/// the plane; `rest`: of those out of it.
 bool is_separable(const Matrix6& stiffness, const Eigen::Matrix<double, 6, 3>& basis,
                   const Eigen::Matrix<double, 6, 3>& rest) {
   const Matrix3 coupling = rest.transpose() * stiffness * basis;
@@ -182,7 +185,7 @@ std::string flaw_of_nodes(const Model& model, const PlaneOfMotion& plane) {
   return "";
 }
 
-/// Free joints have coordinates out of the plane: nothing may act on them.
+/// Whether nothing acts on a coordinate. Required of free joints, since they have coordinates out of the plane.
 bool is_left_alone(const Coordinate& coordinate) {
   return coordinate.damping == 0 && coordinate.friction == 0 && coordinate.friction_coefficient == 0 &&
          !coordinate.limit && coordinate.motion < 0 && coordinate.effort < 0 && coordinate.actuator < 0;
@@ -191,7 +194,7 @@ bool is_left_alone(const Coordinate& coordinate) {
 std::string flaw_of_joints(const Model& model, const PlaneOfMotion& plane) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointMap& joint = model.joints[j];
-    if (joint.kind == JointMapKind::Slide) return "sliders are three-dimensional";
+    if (joint.kind == JointMapKind::Slide) return "sliders are computed in three dimensions only";
     if (joint.kind == JointMapKind::Scalar && !(is_along(plane.normal, to_world(model, joint, joint.rotation)) &&
                                                 is_normal_to(plane.normal, to_world(model, joint, joint.translation))))
       return fmt::format("joint coordinate '{}' moves out of the plane",
@@ -201,14 +204,15 @@ std::string flaw_of_joints(const Model& model, const PlaneOfMotion& plane) {
     const JointMapKind kind = model.joints[coordinate.joint].kind;
     if (kind != JointMapKind::Scalar && !is_left_alone(coordinate))
       return fmt::format("something acts on the free joint coordinate '{}'", coordinate.name);
-    if (coordinate.mimicked >= 0) return "joints that follow others are three-dimensional";
+    if (coordinate.mimicked >= 0) return "joints that mimic others are computed in three dimensions only";
   }
   for (const Actuator& actuator : model.actuators)
     if (actuator.gyroscope &&
         !is_along(plane.normal, model.nodes[actuator.gyroscope->node].rotation * actuator.gyroscope->axis))
       return "the axis of a rotor is not normal to the plane";
-  if (!model.closures.empty()) return "loops are three-dimensional";
-  return model.force_elements.empty() ? "" : "what acts between points of links is three-dimensional";
+  if (!model.closures.empty()) return "loops are computed in three dimensions only";
+  return model.force_elements.empty() ? ""
+                                      : "force elements between points of links are computed in three dimensions only";
 }
 
 bool acts_in_plane(const PlaneOfMotion& plane, const Vector3& force, const Vector3& moment, const Vector3& arm,
@@ -223,10 +227,11 @@ std::string flaw_of_loads(const Model& model, const PlaneOfMotion& plane) {
     if (!acts_in_plane(plane, to_world(model, load, load.force), to_world(model, load, load.moment),
                        model.nodes[load.node].rotation * load.arm, model.length_scale))
       return "a load acts out of the plane";
-  return model.prestrains.empty() ? "" : "prestrains are three-dimensional";
+  return model.prestrains.empty() ? "" : "prestrains are computed in three dimensions only";
 }
 
-/// Vectors of which none may have more out of the plane than round-off of the largest.
+/// Largest squared norms of a set of vectors and of their parts out of the plane. The latter must be round-off of the
+/// former.
 struct Largest {
   double in = 0, out = 0;
   void add(const Vector3& vector, const Vector3& out_of_plane) {
@@ -258,15 +263,15 @@ bool stands_in_plane(const Model& model, const PlaneOfMotion& plane, const State
   return true;
 }
 
-/// What a state has beside places that steps of the energy-momentum family go on from.
+/// Kinds of vectors in a state, besides poses, that affect later steps of the energy-momentum family.
 enum Quantity { kVelocity, kTurning, kSpin, kStrain, kCurvature, kCount };
 
-/// Whether a vector of the kind points along the normal, or is normal to it.
+/// Whether in-plane motion has vectors of this kind along the normal; else they lie in the plane.
 bool is_axial(Quantity quantity) {
   return quantity != kVelocity && quantity != kStrain;
 }
 
-/// visit(quantity, normal, vector), both in the same frame.
+/// Calls visit(quantity, normal, vector) for these vectors of a state; `normal` and `vector` are in the same frame.
 template <class Visit>
 void for_each_vector(const Model& model, const PlaneOfMotion& plane, const State& state, const Visit& visit) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {

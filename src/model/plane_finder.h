@@ -12,17 +12,18 @@ namespace flexarm {
 
 struct PlaneSearch {
   std::optional<PlaneOfMotion> plane;
-  std::string reason;  ///< what lies out of it, or cannot be told; empty if there is a plane
+  std::string reason;  ///< why there is no plane; empty if there is one
 };
 
-/// The plane of which the model is its own mirror image: geometry, sections, inertia, joints, loads and gravity. What
-/// starts in it stays there. Everything is to fit to round-off.
+/// Finds a plane about which the model is symmetric: geometry, sections, inertia, joints, loads and gravity are their
+/// own mirror images, up to round-off. A motion that starts in such a plane stays in it.
 PlaneSearch find_plane(const Model& model);
 
-/// Whether all that a step of the energy-momentum family goes on from has nothing out of the plane but round-off.
+/// Whether all poses, velocities and memories that a step of the energy-momentum family starts from lie in the plane,
+/// up to round-off.
 bool lies_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state);
-/// The same of wrenches and commands in a state. Free joints' coordinates are the only ones whose efforts may point out
-/// of it.
+/// Whether the wrenches and commands of a state act in the plane. Of the coordinates only those of free joints are
+/// checked, since the efforts of others cannot act out of the plane.
 bool acts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state);
 
 }  // namespace flexarm

@@ -16,7 +16,7 @@ Vector6 centroid_strain(const Model& model, int index, const Value& value) {
   const Prestrain& prestrain = model.prestrains[index];
   for (int i = 0; i < 6; ++i)
     if (const int history = prestrain.histories[i]; history >= 0) strain[i] = value(model.histories[history]);
-  // r_c = r + Lambda c, hence Gamma_c = Gamma - c x K.
+  // From the reference line to the centroid c: r_c = r + Lambda c, hence Gamma_c = Gamma - c x K.
   strain.head<3>() -= prestrain.centroid.cross(strain.tail<3>());
   return strain;
 }

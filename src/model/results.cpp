@@ -43,13 +43,14 @@ const char* to_string(StepResult::Reason reason) {
     case StepResult::Reason::OpenLoop:
       return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
     case StepResult::Reason::NeverRests:
-      return "it moves on and on under the loads: nothing holds it";
+      return "the loads move it without limit: nothing holds it";
     case StepResult::Reason::BentTooFar:
       return "an element is bent by nearly a turn, or more, between its nodes";
     case StepResult::Reason::DeadPoint:
-      return "a loop comes to a dead point, beyond which a motion goes, or where nothing says which way it turns";
+      return "a loop reaches a dead point: a prescribed motion goes beyond it, or the loop can move on in more than "
+             "one way";
     case StepResult::Reason::OutOfTime:
-      return "the step takes longer than it may by the clock on the wall";
+      return "the step exceeds its limit of wall time";
   }
   return "unknown";
 }
@@ -69,7 +70,8 @@ std::string recoveries_text(const StepCounts& counts) {
   if (counts.deepest_halving > 0)
     texts.push_back(fmt::format("{} halvings (down to 1/{} of a step)", counts.halvings,
                                 std::int64_t{1} << counts.deepest_halving));
-  if (counts.other_guesses > 0) texts.push_back(fmt::format("{} sub-steps from another guess", counts.other_guesses));
+  if (counts.other_guesses > 0)
+    texts.push_back(fmt::format("{} sub-steps from another initial guess", counts.other_guesses));
   if (counts.dissipated_steps > 0) texts.push_back(fmt::format("{} steps by edmc2", counts.dissipated_steps));
   return fmt::format("{}", fmt::join(texts, ", "));
 }

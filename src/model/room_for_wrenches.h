@@ -1,11 +1,11 @@
 #pragma once
-/// Memory for wrenches that come and go.
+/// How much memory is reserved for wrenches that programs apply during a run.
 
 #include <cstddef>
 
 namespace flexarm {
 
-/// So many may begin or end between two steps without an allocation.
+/// Up to so many wrenches act at a time without an allocation on the heap.
 constexpr std::size_t kRoomForWrenches = 16;
 
 }  // namespace flexarm

@@ -1,17 +1,18 @@
 #pragma once
-/// The layout of a state: only this file knows all its numbers.
+/// Visits all numbers of a state, for checkpoints and checks. Only this file lists all of them.
 
 #include "model/state.h"
 
 namespace flexarm {
 
-/// The quantity that may be nan: no command holds.
+/// Name of the only quantity that may be NaN, which means that there is no command.
 constexpr const char* kCommand = "a command";
-/// The quantity that may not be negative.
+/// Name of the only quantity that must not be negative.
 constexpr const char* kDuration = "the duration of a past step";
 
-/// Calls `visit(what, number)` for every number of a state in a fixed order; `what`: its quantity, for messages. The
-/// whole numbers, halving_level to steps, the counts and order of histories, and left_lines are not among them.
+/// Calls `visit(what, number)` for every floating-point number of a state, in a fixed order. `what`: name of the
+/// quantity for messages. Integers are not visited: halving_level, good_steps, steps, the counts and order of
+/// histories, left_lines.
 template <class AnyState, class Visit>
 void for_each_number(AnyState& state, const Visit& visit) {
   const auto vector = [&](const char* what, auto& v) {

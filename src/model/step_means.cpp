@@ -27,17 +27,18 @@ void StepMeans::end(double duration) {
 void StepMeans::restart(const std::vector<double>& forces) {
   assert(forces.size() == means[0].size());
   std::copy(forces.begin(), forces.end(), means[0].begin());
-  durations[0] = 0;  // of one instant
+  durations[0] = 0;  // the forces are those at an instant
   count = 1;
 }
 
 double StepMeans::at_end(std::size_t i) const {
   assert(i < means[0].size());
   if (count < 2) return means[0][i];
-  // The mean of two steps has lost what alternates, and belongs to the step before ...
+  // The average of the last two means has no alternating part. It is the value at the beginning of the last step.
   if (count < 3) return 0.5 * (means[0][i] + means[1][i]);
-  // ... from which the change of this mean leads on to the end of the last one: equal steps change it by half of the
-  // difference of the newest and the oldest mean. Others have their middles elsewhere.
+  // Extrapolate this average to the end of the last step. For equal steps, its change over a step is half of the
+  // difference between the newest and the oldest mean. For unequal steps, `beyond` accounts for the positions of their
+  // midpoints.
   const auto [h0, h1, h2] = durations;
   const double beyond = (h0 - 0.5 * h1 - 0.5 * h2) / (0.5 * h0 + h1 + 0.5 * h2);
   return means[0][i] + 0.5 * (means[1][i] - means[2][i]) + 0.5 * beyond * (means[0][i] - means[2][i]);

@@ -1,5 +1,5 @@
 #pragma once
-/// Forces over the last steps, for output.
+/// Computes output forces from their means over the last steps.
 
 #include <array>
 #include <cstddef>
@@ -7,24 +7,24 @@
 
 namespace flexarm {
 
-/// Forces averaged over whole steps: what drives motions, what joints transmit. Where a fast mode or a prescribed
-/// coordinate's own velocity flips its sign from step to step, so do they; what is put out is free of that and belongs
-/// to the end of a step (theory.md, "Published velocities and efforts").
+/// Forces averaged over whole steps: efforts that drive motions, and wrenches that joints transmit. These means
+/// alternate from step to step if a fast mode or the velocity of a prescribed coordinate does. The output, at_end(),
+/// has no such part, and is the value at the end of a step (theory.md, "Published velocities and efforts").
 struct StepMeans {
   static constexpr int kLength = 3;
-  std::vector<double> impulse;                     ///< of the step under way [N s or N m s]
-  std::array<std::vector<double>, kLength> means;  ///< newest first [N or N m]
-  std::array<double, kLength> durations{};         ///< of the steps over which they were taken [s]
-  int count = 0;                                   ///< of means that hold
+  std::vector<double> impulse;                     ///< of the current step so far [N s or N m s]
+  std::array<std::vector<double>, kLength> means;  ///< of the last steps, newest first [N or N m]
+  std::array<double, kLength> durations{};         ///< of these steps [s]
+  int count = 0;                                   ///< number of valid means
 
   void resize(std::size_t forces);
-  /// A whole step begins.
+  /// Call this when a whole step begins.
   void begin();
-  /// It has ended, after `duration` [s].
+  /// Call this when the whole step has ended. `duration`: its length [s].
   void end(double duration);
-  /// Nothing before counts: these are the forces [N or N m].
+  /// Forgets all means; `forces` are the forces at this instant [N or N m].
   void restart(const std::vector<double>& forces);
-  /// A force at the end of the last step, of second order from the third step on [N or N m].
+  /// Returns a force at the end of the last step [N or N m]. It is accurate to second order from the third step on.
   double at_end(std::size_t force) const;
 };
 

@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace flexarm::python {
 namespace {
 
-/// Records a row at the ends of intervals; those of each try take the place of those of the one before.
+/// Records a row at the end of each interval. The rows of a new try replace those of the last one.
 class IntervalRecorder : public RunWatcher {
  public:
   explicit IntervalRecorder(ResultColumns* columns) : columns_(columns) {}
@@ -32,7 +32,7 @@ class IntervalRecorder : public RunWatcher {
     counts_ = {};
   }
 
-  /// None: nothing is recorded.
+  /// The rows, or None if nothing is recorded.
   py::object rows() const {
     if (!columns_) return py::none();
     const std::size_t width = columns_->columns().size();
@@ -69,20 +69,21 @@ py::object run_accurately(GuardedSimulation& guarded, double until, double accur
 
 void bind_accurate_run(SimulationClass& type) {
   type.def("run_to_accuracy", &run_accurately,
-           R"(Runs to a time, again and again with more steps, until the error is small.
+           R"(Runs to a time, repeatedly and with more steps each time, until the estimated error is small enough.
 
 until: the time [s].
-accuracy: of the positions of probes (without any, of tips), in (0, 1): the root mean square of their error over time,
-  relative to `scale`, is estimated to be at most that. It is the error of time integration; meshes are what they are.
-intervals: of equal length, at whose ends points are judged and rows recorded.
+accuracy: largest estimated error of the positions of probes (of tips if there are no probes), in (0, 1): root mean
+  square over time, relative to `scale`. It is the error of time integration, without that of the meshes.
+intervals: number of equal intervals; errors are measured and rows recorded at their ends.
 record: patterns of columns, as in run().
-scale: of errors [m]; None: how far the points move, a millionth of the mechanism's size at least.
-frame: the link in whose frame points are judged; '': the world.
-most_tries, most_steps: after which it gives up.
+scale: length to which errors are relative [m]; None: the largest displacement of the points, at least a millionth of
+  the mechanism's size.
+frame: the link in whose frame errors are measured; '': the world.
+most_tries, most_steps: limits after which it gives up.
 
-Where the scene leaves the scheme to flexarm, tries may be made with another one; the simulation keeps its own. Commands
-stay as they are. Returns an AccurateRun, with an array of the shape (intervals + 1, columns), the first row being the
-start. Raises AccuracyError if it gives up, StepError if steps fail, ValueError if something is out of range.)",
+If the scene does not choose a scheme, tries may use another one; the simulation keeps its own. Commands stay as they
+are. Returns an AccurateRun, with an array of the shape (intervals + 1, columns), the first row being the start. Raises
+AccuracyError if it gives up, StepError if steps fail, ValueError if something is out of range.)",
            py::arg("until"), py::arg("accuracy"), py::arg("intervals") = 100, py::arg("record") = py::none(),
            py::arg("scale") = py::none(), py::arg("frame") = "", py::arg("most_tries") = AccuracyRequest{}.most_tries,
            py::arg("most_steps") = AccuracyRequest{}.most_steps);

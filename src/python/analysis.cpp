@@ -39,7 +39,7 @@ void solve_static(GuardedSimulation& guarded, int load_steps, bool stable) {
     raise_step_error(guarded.use(), lack, result.reason);
   }
   const char* consequence =
-      stable ? "falls from it; this is where it comes to rest (stable=False: the one that it falls from)"
+      stable ? "falls from it; this is the equilibrium in which it comes to rest (for the unstable one: stable=False)"
              : "would fall from it";
   const std::vector<std::string> doubts = guarded.work(
       [&](const Simulation& simulation) { return doubts_about_equilibrium(simulation, result, consequence); });
@@ -52,12 +52,13 @@ void bind_analysis(SimulationClass& type) {
   type.def("solve_static", &solve_static,
            R"(Goes to the equilibrium under gravity and the loads at t = 0, at rest there.
 
-load_steps: in which loads and gravity grow from zero; prescribed motions are held at t = 0.
-stable: where that equilibrium is not stable, one to which the mechanism falls from it, and a SceneWarning says so.
+load_steps: number of steps in which loads and gravity grow from zero; prescribed motions are held at their values for
+  t = 0.
+stable: if that equilibrium is not stable, goes to a stable one that the mechanism reaches from it, with a SceneWarning.
 
-Raises StepError if there is none; the state is as before then.)",
+Raises StepError, and keeps the state, if no equilibrium is found.)",
            py::arg("load_steps") = kLoadSteps, py::arg("stable") = true)
-      .def("natural_modes", &natural_modes, R"(Modes about the configuration of now, taken to be at rest.
+      .def("natural_modes", &natural_modes, R"(Modes about the present configuration, without its velocities.
 
 A list of Mode: growing ones first, then by the magnitude of their eigenvalues.
 Raises ValueError if `count` < 1, RuntimeError if the eigenvalue problem cannot be solved.)",

@@ -1,5 +1,5 @@
 #pragma once
-/// What the façade gives, as arrays of numpy.
+/// Converts results of the façade to numpy arrays.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace flexarm::python {
 
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-constexpr std::size_t kPose = 7;  ///< numbers of one: x y z, qx qy qz qw
+constexpr std::size_t kPose = 7;  ///< numbers of a pose: x y z, qx qy qz qw
 
 inline double* put(const Vector3& vector, double* place) {
   return std::copy_n(vector.data(), 3, place);
@@ -26,7 +26,7 @@ inline double* put(const Wrench& wrench, double* place) {
   return put(wrench.moment, put(wrench.force, place));
 }
 
-/// A number for each index.
+/// An array of `count` numbers `value(index)`.
 template <class Value>
 pybind11::array_t<double> numbers(std::size_t count, const Value& value) {
   pybind11::array_t<double> array(static_cast<pybind11::ssize_t>(count));
@@ -34,7 +34,7 @@ pybind11::array_t<double> numbers(std::size_t count, const Value& value) {
   return array;
 }
 
-/// A row for each index, which `fill(index, place)` writes.
+/// An array of `count` rows; `fill(index, place)` writes each row to `place`.
 template <class Fill>
 pybind11::array_t<double> rows(std::size_t count, std::size_t columns, const Fill& fill) {
   pybind11::array_t<double> array({count, columns});
@@ -43,7 +43,7 @@ pybind11::array_t<double> rows(std::size_t count, std::size_t columns, const Fil
   return array;
 }
 
-/// "(3, 2)"
+/// The shape as Python prints it: "(3, 2)".
 inline std::string shape_text(const pybind11::array& array) {
   return pybind11::str(array.attr("shape"));
 }

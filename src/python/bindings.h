@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of the extension module flexarm._flexarm, one file each.
+/// The parts of the extension module flexarm._flexarm, each in a file of its own.
 
 #include <memory>
 
@@ -19,6 +19,7 @@ void bind_looks(SimulationClass& simulation);
 void bind_frames(pybind11::module_& module, SimulationClass& simulation);
 void bind_commands(SimulationClass& simulation);
 void bind_payloads(SimulationClass& simulation);
+void bind_recordings(pybind11::module_& module);
 void bind_runs(SimulationClass& simulation);
 void bind_analysis(SimulationClass& simulation);
 void bind_linear_models(pybind11::module_& module, SimulationClass& simulation);

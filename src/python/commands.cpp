@@ -29,7 +29,7 @@ Vector3 vector_of(const py::handle& wrench, const char* field) {
   return Vector3(numbers.data());
 }
 
-/// Of a flexarm.Wrench.
+/// Converts a flexarm.Wrench.
 AppliedWrench wrench_of(const Simulation& simulation, const py::handle& given) {
   AppliedWrench applied;
   applied.link = link_index(simulation, given.attr("link").cast<Key>());
@@ -65,7 +65,7 @@ void set_joint_state(GuardedSimulation& guarded, const JointValues& positions, c
   simulation.set_joint_state(list);
 }
 
-/// A command to one joint, from the next step on.
+/// Makes a method that commands one joint, from the next step on.
 template <class... Values>
 auto to_joint(void (Simulation::*command)(std::size_t, Values...)) {
   return [command](GuardedSimulation& guarded, const Key& joint, Values... values) {
@@ -76,9 +76,10 @@ auto to_joint(void (Simulation::*command)(std::size_t, Values...)) {
 
 void bind_efforts(SimulationClass& type) {
   type.def("command_effort", to_joint(&Simulation::command_effort),
-           R"(Commands an effort [N m or N] from the next step on, in place of the scene's.
+           R"(Commands an effort [N m or N] from the next step on, instead of the scene's.
 
-It saturates at the joint's limit. Raises ValueError if it is not finite, or the joint takes none (effort_joints).)",
+It saturates at the joint's limit. Raises ValueError if it is not finite, or if no effort can be commanded to the
+joint (see effort_joints).)",
            py::arg("joint"), py::arg("effort"))
       .def(
           "command_efforts",
@@ -88,32 +89,33 @@ It saturates at the joint's limit. Raises ValueError if it is not finite, or the
           },
           R"(Commands efforts of several joints, shape (joints,) [N m or N]; see command_effort().
 
-joints: which ones, by names or indices; None: all of effort_joints.)",
+joints: names or indices; None: all of effort_joints.)",
           py::arg("efforts"), py::arg("joints") = py::none())
       .def("release_command", to_joint(&Simulation::release_command),
-           "Goes back to the scene's effort of a joint, zero where there is none.", py::arg("joint"));
+           "Returns to the scene's effort of a joint, zero if it has none.", py::arg("joint"));
 }
 
 void bind_servos(SimulationClass& type) {
   type.def("command_set_point", to_joint(&Simulation::command_set_point),
-           R"(Gives a joint's servo a set point from the next step on, in place of the scene's.
+           R"(Gives a joint's servo a set point from the next step on, instead of the scene's.
 
-set_point: of what its mode names [rad, m, rad/s, m/s, N m or N].
-rate, acceleration: of one that moves, at the end of the next step [over s, over s^2]; `set_point` is as of then, too.
-Raises ValueError if one is not finite, or the joint has no servo (servo_joints).)",
+set_point: effort, velocity or position, depending on the servo's mode [rad, m, rad/s, m/s, N m or N].
+rate, acceleration: first and second derivative of a moving set point [per s, per s^2]. All three are values at the end
+  of the next step.
+Raises ValueError if one is not finite, or the joint has no servo (see servo_joints).)",
            py::arg("joint"), py::arg("set_point"), py::arg("rate") = 0.0, py::arg("acceleration") = 0.0)
       .def(
           "set_point",
           [](GuardedSimulation& guarded, const Key& joint) {
             return guarded.use().set_point(joint_index(guarded.use(), joint));
           },
-          "What a joint's servo is asked for at the end of the next step [as its mode says].", py::arg("joint"))
+          "Set point of a joint's servo at the end of the next step, in the unit of its mode.", py::arg("joint"))
       .def("release_set_point", to_joint(&Simulation::release_set_point),
-           "Goes back to the scene's set point and mode of a joint's servo.", py::arg("joint"))
+           "Returns to the scene's set point and mode of a joint's servo.", py::arg("joint"))
       .def("switch_servo", to_joint(&Simulation::switch_servo),
            R"(Switches a joint's servo off or on, from the next step on.
 
-Off, its motor gives no effort, commanded ones included; on again, it has no memory in its integral.)",
+While it is off, its motor gives no effort, not even a commanded one. Switched on again, its integral is zero.)",
            py::arg("joint"), py::arg("on"))
       .def(
           "switch_mode",
@@ -121,10 +123,11 @@ Off, its motor gives no effort, commanded ones included; on again, it has no mem
             Simulation& simulation = guarded.use();
             simulation.switch_mode(joint_index(simulation, joint), mode_of(mode));
           },
-          R"(Lets a joint's servo control 'effort', 'velocity' or 'position', from the next step on, and its effort goes on.
+          R"(Switches a servo to 'effort', 'velocity' or 'position' from the next step on, without a jump of its effort.
 
-Its set point is the position, velocity or effort of now; without a `ki` to go on by, the one that gives the same effort.
-Raises ValueError if the scene has no gains of that mode for it.)",
+Its set point becomes the present position, velocity or effort; if the new mode has no `ki`, it becomes the set
+point that gives the same effort.
+Raises ValueError if the scene has no gains of that mode for the servo.)",
           py::arg("joint"), py::arg("mode"))
       .def(
           "servo_mode",
@@ -140,20 +143,20 @@ void bind_commands(SimulationClass& type) {
   bind_efforts(type);
   bind_servos(type);
   type.def("apply_wrenches", &apply_wrenches,
-           R"(Applies wrenches from the next step on, in place of all that were applied before; []: takes these away.
+           R"(Applies wrenches from the next step on, which replace all applied before; [] removes them.
 
-wrenches: of flexarm.Wrench.
-Raises ValueError if one is not finite, its link is fixed to the world, or it pulls and the scheme does not let it;
-nothing has changed then.)",
+wrenches: a list of flexarm.Wrench.
+Raises ValueError, and changes nothing, if one is not finite, its link is fixed to the world, or it pulls on a link and
+the scheme does not support that.)",
            py::arg("wrenches"))
-      .def(
-          "set_joint_state", &set_joint_state,
-          R"(Puts joints elsewhere at once, or gives them other velocities; what hangs on them moves with them as it is.
+      .def("set_joint_state", &set_joint_state,
+           R"(Sets positions or velocities of joints at once.
 
-positions, velocities: by names of joints [rad or m, rad/s or m/s]; what is not given stays.
-Raises ValueError if a number is not finite, a position beyond its limits, a joint prescribed or a follower, or if a loop
-does not stay closed; nothing has changed then.)",
-          py::arg("positions") = JointValues(), py::arg("velocities") = JointValues());
+The links that they carry move with them, without changing their shape.
+positions, velocities: by names of joints [rad or m, rad/s or m/s]; values that are not given stay.
+Raises ValueError, and changes nothing, if a number is not finite, a position is beyond its limits, a joint is
+prescribed or mimics another, or if a loop would not stay closed.)",
+           py::arg("positions") = JointValues(), py::arg("velocities") = JointValues());
 }
 
 }  // namespace flexarm::python

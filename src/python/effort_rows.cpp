@@ -20,7 +20,7 @@ std::vector<std::size_t> commanded_joints(const Simulation& simulation, const st
   }
   for (const std::size_t joint : indices)
     if (!simulation.is_commandable(joint))
-      throw std::invalid_argument(fmt::format("joints: expected some that take efforts, of [{}], but {}",
+      throw std::invalid_argument(fmt::format("joints: expected joints that take efforts, of [{}], but {}",
                                               fmt::join(effort_joints(simulation), ", "),
                                               refusal_of_commands(simulation, joint)));
   return indices;

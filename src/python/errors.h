@@ -1,5 +1,5 @@
 #pragma once
-/// Exceptions and warnings of the package, which src/python/flexarm/errors.py defines.
+/// Raises exceptions and warnings that src/python/flexarm/errors.py defines.
 
 #include <string>
 
@@ -10,7 +10,7 @@
 
 namespace flexarm::python {
 
-/// The package's exception or value of that name, with these arguments.
+/// Makes an object of a class in a module of the package, such as an exception.
 template <class... Arguments>
 pybind11::object make(const char* module, const char* name, Arguments&&... arguments) {
   return pybind11::module_::import(module).attr(name)(std::forward<Arguments>(arguments)...);
@@ -18,10 +18,10 @@ pybind11::object make(const char* module, const char* name, Arguments&&... argum
 
 [[noreturn]] void raise(const pybind11::object& error);
 [[noreturn]] void raise_scene_error(const std::string& text);
-/// `rows`: what had been recorded until then, or None.
+/// @param rows  the rows that were recorded before the failure, or None
 [[noreturn]] void raise_step_error(const Simulation& simulation, const std::string& text, StepResult::Reason reason,
                                    const pybind11::object& rows = pybind11::none());
-/// As SceneWarning, at the line of Python that has called.
+/// Warns with SceneWarning, at the line of Python code that called.
 void warn(const std::string& text);
 
 }  // namespace flexarm::python

@@ -8,7 +8,7 @@ namespace py = pybind11;
 
 namespace flexarm::python {
 
-/// A BeamPoint, as a row of a structured array.
+/// A BeamPoint in the layout of a row of a structured numpy array.
 struct BeamRow {
   double arc_length, pose[kPose], strain[6], resultant[6];
 };
@@ -96,37 +96,40 @@ void bind_frames(py::module_& module, SimulationClass& type) {
   PYBIND11_NUMPY_DTYPE(BeamRow, arc_length, pose, strain, resultant);
   module.attr("beam_point_type") = py::dtype::of<BeamRow>();
   type.def_property_readonly("link_poses", &link_poses,
-                             "of the frames of links, shape (links, 7): x y z [m], quaternion x y z w")
-      .def_property_readonly("tip_poses", &tip_poses,
-                             "of the sections at the ends of beams, of other links their frames, shape (links, 7): "
-                             "x y z [m], quaternion x y z w")
-      .def_property_readonly("probe_poses", &probe_poses, "shape (probes, 7): x y z [m], quaternion x y z w")
+                             "poses of the frames of links, shape (links, 7): x y z [m], quaternion x y z w")
+      .def_property_readonly(
+          "tip_poses", &tip_poses,
+          "poses of the last sections of beams, and of the frames of links without beams, shape (links, 7): "
+          "x y z [m], quaternion x y z w")
+      .def_property_readonly("probe_poses", &probe_poses,
+                             "poses of probes, shape (probes, 7): x y z [m], quaternion x y z w")
       .def_property_readonly("probe_velocities", &probe_velocities,
-                             "shape (probes, 6): linear x y z [m/s], angular x y z [rad/s]")
+                             "velocities of probes, shape (probes, 6): linear x y z [m/s], angular x y z [rad/s]")
       .def_property_readonly("probe_accelerations", &probe_accelerations,
-                             "shape (probes, 6): linear x y z [m/s^2], angular x y z [rad/s^2]; zero before the second "
+                             "accelerations of probes, shape (probes, 6): linear x y z [m/s^2], angular x y z "
+                             "[rad/s^2]; zero before the second "
                              "step")
       .def("beam_points", &beam_points,
            R"(Points of a beam: at every node, and `between` ones inside each pair of nodes.
 
-A structured array, shape (points,); of its fields, each of which is an array,
-  arc_length: of the undeformed line, shape (points,) [m]
+A structured array, shape (points,). Its fields are arrays:
+  arc_length: along the undeformed line, shape (points,) [m]
   pose: of the section, shape (points, 7): x y z [m], quaternion x y z w
   strain: shape (points, 6), in the section's axes: axial and shear [-], torsion and bending [1/m]
-  resultant: of stresses, elastic, shape (points, 6), in the section's axes: force [N], moment [N m]
+  resultant: elastic stress resultants, shape (points, 6), in the section's axes: force [N], moment [N m]
 Empty if the link has no beam; strains and resultants of beams without elements are NaN.)",
            py::arg("link"), py::arg("between") = 0)
       .def("section", &section, R"(The section of a flexible link at an arc length of its undeformed line [m].
 
-One point as beam_points() has them, shape (). Raises ValueError if the link is rigid or its line not as long.)",
+One point, with the fields of beam_points(), shape (). Raises ValueError if the link is rigid or its line is shorter.)",
            py::arg("link"), py::arg("arc_length"))
-      .def("sample", &sample, R"(What a sensor has measured last, with its errors, shape (channels,).
+      .def("sample", &sample, R"(The last measurement of a sensor, with its errors, shape (channels,).
 
 The channels and their units are those of the columns sensor/NAME/..., see columns().)",
            py::arg("sensor"))
-      .def("reaction", &reaction, R"(What the joint that carries a link does to it, shape (6,): force [N], moment [N m].
+      .def("reaction", &reaction, R"(Force [N] and moment [N m] on a link from the joint that carries it, shape (6,).
 
-About the link's origin. Raises ValueError unless a sensor of the scene asks for it (kind reaction or wrench).)",
+The moment is about the link's origin. Raises ValueError unless the link has a sensor of kind reaction or wrench.)",
            py::arg("link"));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A simulation as Python's threads see it.
+/// Guards a simulation against simultaneous use by several Python threads.
 
 #include <map>
 #include <memory>
@@ -16,8 +16,8 @@
 
 namespace flexarm::python {
 
-/// Belongs to one thread while that works on it without Python's lock; whoever comes in between is told so. All else,
-/// this class's own members included, is changed only by who holds the lock.
+/// While a thread works on the simulation without Python's global lock (GIL), other threads that use it get an
+/// exception. All other access, also to the members of this class, requires the GIL.
 class GuardedSimulation {
  public:
   GuardedSimulation(std::shared_ptr<const ReadScene> scene, Simulation simulation)
@@ -28,7 +28,7 @@ class GuardedSimulation {
         simulation_(std::move(simulation)),
         is_edited_(other.is_edited_) {}
 
-  /// @throws std::runtime_error if another thread works on it.
+  /// The simulation. @throws std::runtime_error if another thread works on it
   Simulation& use() {
     if (is_in_work_)
       throw std::runtime_error(
@@ -37,7 +37,7 @@ class GuardedSimulation {
     return simulation_;
   }
 
-  /// `work(simulation)`, while other threads of Python's run.
+  /// Calls `work(simulation)` without the GIL, so that other Python threads can run.
   template <class Work>
   auto work(const Work& work) {
     Simulation& simulation = use();
@@ -48,15 +48,15 @@ class GuardedSimulation {
 
   std::shared_ptr<GuardedSimulation> copy() { return std::make_shared<GuardedSimulation>(*this, use().copy()); }
 
-  /// Those that fit the patterns, found once.
-  /// @throws std::invalid_argument naming a pattern that no column fits.
+  /// The columns that match the patterns; kept for later calls.
+  /// @throws std::invalid_argument that names a pattern without any matching column
   ResultColumns& columns(const std::vector<std::string>& patterns) {
     const auto known = columns_.find(patterns);
     if (known != columns_.end()) return known->second;
     return columns_.emplace(patterns, ResultColumns(use(), ResultColumns::Solver::With, patterns)).first->second;
   }
 
-  /// `edit(simulation)` makes its scene another one; if it throws, nothing has changed.
+  /// Calls `edit(simulation)`, which changes the scene. If it throws, nothing has changed.
   template <class Edit>
   void edit(const Edit& edit) {
     edit(use());
@@ -65,14 +65,14 @@ class GuardedSimulation {
     is_edited_ = true;
   }
 
-  /// Of which it was made.
+  /// The scene from which the simulation was made.
   const std::shared_ptr<const ReadScene>& scene() const { return scene_; }
   bool is_edited() const { return is_edited_; }
-  /// The same for all that are copies of each other: their snapshots fit.
+  /// A mark that copies of a simulation share. Snapshots can be exchanged between simulations with the same mark.
   const std::shared_ptr<const char>& family() const { return family_; }
 
  private:
-  /// For as long as it lives.
+  /// Sets the flag as long as this object lives.
   class InWork {
    public:
     explicit InWork(bool& flag) : flag_(flag) { flag_ = true; }

@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace flexarm::python {
 namespace {
 
-/// A matrix for each index: the shape (matrices, outputs, inputs).
+/// Stacks matrices to an array with the shape (matrices, outputs, inputs).
 template <class Number, class Matrix>
 py::array_t<Number> stacked(const std::vector<Matrix>& matrices, const LinearModel& model) {
   py::array_t<Number> array({matrices.size(), model.outputs.size(), model.inputs.size()});
@@ -70,8 +70,8 @@ void bind_linear_models(py::module_& module, SimulationClass& simulation) {
   using Class = py::class_<LinearModel>;
   Class type(module, "LinearModel", R"(Small deviations from a reference motion: x' = a x + b u, v = c x + d u.
 
-The states x are positions, which are the first, and their rates; mass y'' + damping y' + stiffness y = forces are the
-equations of `coordinates` behind it, those that <motion>s drive included. docs/linearise.md)");
+The states x are positions, followed by their rates. The model is derived from mass y'' + damping y' + stiffness y =
+forces, with y the `coordinates`, including those that <motion>s drive. docs/linearise.md)");
   type.attr("__module__") = "flexarm";
   const auto matrix = [&](const char* name, Eigen::MatrixXd LinearModel::*member, const char* text) {
     type.def_property_readonly(
@@ -81,28 +81,29 @@ equations of `coordinates` behind it, those that <motion>s drive included. docs/
     type.def_property_readonly(
         name, [member](const LinearModel& model) { return model.*member; }, text);
   };
-  matrix("a", &LinearModel::a, "Rates of states by states, shape (states, states).");
-  matrix("b", &LinearModel::b, "Rates of states by inputs, shape (states, inputs).");
-  matrix("c", &LinearModel::c, "Outputs by states, shape (outputs, states).");
-  matrix("d", &LinearModel::d, "Outputs by inputs, shape (outputs, inputs).");
-  matrix("mass", &LinearModel::mass, "Shape (coordinates, coordinates).");
-  matrix("damping", &LinearModel::damping, "With gyroscopic terms, shape (coordinates, coordinates).");
-  matrix("stiffness", &LinearModel::stiffness, "With centrifugal terms, shape (coordinates, coordinates).");
-  names("states", &LinearModel::states, "Names.");
-  names("inputs", &LinearModel::inputs, "Names.");
-  names("outputs", &LinearModel::outputs, "Names.");
-  names("coordinates", &LinearModel::coordinates, "Names.");
-  names("left_out", &LinearModel::left_out, "Effects of the scene that the model does not have, in words.");
+  matrix("a", &LinearModel::a, "Derivatives of the states' rates by the states, shape (states, states).");
+  matrix("b", &LinearModel::b, "Derivatives of the states' rates by the inputs, shape (states, inputs).");
+  matrix("c", &LinearModel::c, "Derivatives of the outputs by the states, shape (outputs, states).");
+  matrix("d", &LinearModel::d, "Derivatives of the outputs by the inputs, shape (outputs, inputs).");
+  matrix("mass", &LinearModel::mass, "Mass matrix, shape (coordinates, coordinates).");
+  matrix("damping", &LinearModel::damping, "Damping matrix, with gyroscopic terms, shape (coordinates, coordinates).");
+  matrix("stiffness", &LinearModel::stiffness,
+         "Stiffness matrix, with centrifugal terms, shape (coordinates, coordinates).");
+  names("states", &LinearModel::states, "Names of the states.");
+  names("inputs", &LinearModel::inputs, "Names of the inputs.");
+  names("outputs", &LinearModel::outputs, "Names of the outputs.");
+  names("coordinates", &LinearModel::coordinates, "Names of the coordinates y.");
+  names("left_out", &LinearModel::left_out, "Descriptions of effects of the scene that the model leaves out.");
   type.def_property_readonly(
           "drift", [](const LinearModel& model) { return model.drift; },
-          "x' of the reference itself, shape (states,): zeros at rest.")
+          "x' on the reference motion, shape (states,); zero for a reference at rest.")
       .def(
           "poles",
           [](const LinearModel& model) {
             const std::vector<std::complex<double>> values = poles_of(model);
             return py::array_t<std::complex<double>>(static_cast<py::ssize_t>(values.size()), values.data());
           },
-          "Eigenvalues of a by their size, of conjugate pairs those with an imaginary part >= 0 [1/s].")
+          "Eigenvalues of a, sorted by magnitude; of conjugate pairs only those with an imaginary part >= 0 [1/s].")
       .def(
           "frequency_response",
           [](const LinearModel& model, const std::vector<double>& frequencies) {
@@ -112,25 +113,26 @@ equations of `coordinates` behind it, those that <motion>s drive included. docs/
 
 frequencies: f [Hz]. Raises RuntimeError at the frequency of an undamped pole.)",
           py::arg("frequencies"))
-      .def("step_response", &step_response_of, R"(Outputs after each input by itself went from 0 to 1 at t = 0.
+      .def("step_response", &step_response_of, R"(Responses to a step of one input from 0 to 1 at t = 0, for each input.
 
-until: the last time [s]. intervals: equal ones between the times.
+until: the last time [s]. intervals: number of equal intervals between the times.
 Returns times, shape (intervals + 1,), and outputs, shape (intervals + 1, outputs, inputs).)",
            py::arg("until"), py::arg("intervals") = 1000)
-      .def("reduced", &reduced_model, R"(A model of `order` states by balanced truncation of what decays.
+      .def("reduced", &reduced_model, R"(A model with `order` states, by balanced truncation of its decaying part.
 
-Poles that do not decay stay. No gain is off by more than twice the sum of the Hankel singular values that are left out.
-Returns the LinearModel and all Hankel singular values, the largest first. Raises ValueError if `order` is none that
-there is.)",
+Poles that do not decay are kept. The error of every gain is at most twice the sum of the Hankel singular values
+that are left out. Returns the LinearModel and all Hankel singular values, the largest first. Raises ValueError if there
+is no model of that `order`.)",
            py::arg("order"));
-  simulation.def("linearise", &linearise, R"(A LinearModel of small motions about the configuration of now.
+  simulation.def("linearise", &linearise, R"(A LinearModel of small motions about the present configuration.
 
-inputs: names as "effort:JOINT", "motion:JOINT", "wrench:POINT:fx"; none: efforts on all joints that may be commanded.
+inputs: names as "effort:JOINT", "motion:JOINT", "wrench:POINT:fx"; none: efforts on all effort_joints.
 outputs: as "position:JOINT", "acceleration:POINT:x", "strain:SENSOR"; none: positions of joints and probes.
-about: 'rest': as it stands, without velocities, under the loads at t = 0, so after solve_static(); 'steady': with
-  <motion>s as fast as at t = 0; 'instant': the motion as it is.
+about: 'rest': the present configuration without velocities, under the loads at t = 0 (call solve_static() before);
+  'steady': a steady motion with the velocities of <motion>s at t = 0; 'instant': the present motion.
 
-Raises ValueError naming what there is, if an input or output does not exist; RuntimeError if there is no such model.)",
+Raises ValueError, which lists the existing names, if an input or output does not exist; RuntimeError if there is no
+such model.)",
                  py::arg("inputs") = std::vector<std::string>(), py::arg("outputs") = std::vector<std::string>(),
                  py::kw_only(), py::arg("about") = "rest");
 }

@@ -22,7 +22,7 @@ OnFailure on_failure_of(const std::string& name) {
   throw std::invalid_argument("on_failure: expected 'stop' or 'dissipate', got '" + name + "'");
 }
 
-/// A Scene, or that of a path.
+/// The given Scene, or the scene that is read from a given path.
 std::shared_ptr<ReadScene> scene_of(const py::object& given) {
   if (py::isinstance<ReadScene>(given)) return given.cast<std::shared_ptr<ReadScene>>();
   if (!py::isinstance<py::str>(given) && !py::hasattr(given, "__fspath__"))
@@ -50,7 +50,7 @@ std::shared_ptr<GuardedSimulation> simulation_of(const py::object& given, const 
   }
 }
 
-/// A property that is a function of the simulation.
+/// Defines a property whose value is a function of the simulation.
 template <class Look>
 void look(SimulationClass& type, const char* name, const Look& look, const char* text) {
   type.def_property_readonly(
@@ -60,8 +60,8 @@ void look(SimulationClass& type, const char* name, const Look& look, const char*
 void bind_names(SimulationClass& type) {
   look(
       type, "joint_names", [](const Simulation& s) { return s.coordinate_names(); },
-      "of released coordinates, in the order of all arrays of joints");
-  look(type, "effort_joints", &effort_joints, "names of those that take commands of efforts");
+      "names of released coordinates; all arrays of joints have this order");
+  look(type, "effort_joints", &effort_joints, "names of joints to which efforts can be commanded");
   look(
       type, "effort_limits",
       [](const Simulation& s) {
@@ -70,10 +70,12 @@ void bind_names(SimulationClass& type) {
           return limit > 0 ? limit : std::numeric_limits<double>::infinity();
         });
       },
-      "of joints, at which commanded efforts saturate, shape (joints,); infinite where there is none [N m or N]");
-  look(type, "servo_joints", &servo_joints, "names of those with servos");
+      "limits of joints at which commanded efforts saturate, shape (joints,); infinite for joints without one [N m or "
+      "N]");
+  look(type, "servo_joints", &servo_joints, "names of joints with servos");
   look(
-      type, "link_names", [](const Simulation& s) { return s.link_names(); }, "in the order of all arrays of links");
+      type, "link_names", [](const Simulation& s) { return s.link_names(); },
+      "names of links; all arrays of links have this order");
   look(
       type, "flexible_links",
       [](const Simulation& s) {
@@ -82,9 +84,9 @@ void bind_names(SimulationClass& type) {
           if (s.is_flexible(i)) names.push_back(s.link_names()[i]);
         return names;
       },
-      "names of those with beams that bend");
-  look(type, "probe_names", &probe_names, "in the order of all arrays of probes");
-  look(type, "sensor_names", &sensor_names, "in the scene's order");
+      "names of links with flexible beams");
+  look(type, "probe_names", &probe_names, "names of probes; all arrays of probes have this order");
+  look(type, "sensor_names", &sensor_names, "names of sensors, in the scene's order");
 }
 
 void bind_joints(SimulationClass& type) {
@@ -93,19 +95,21 @@ void bind_joints(SimulationClass& type) {
       [](const Simulation& s) {
         return numbers(s.coordinate_names().size(), [&](std::size_t i) { return s.position(i); });
       },
-      "of joints, shape (joints,) [rad or m]");
+      "positions of joints, shape (joints,) [rad or m]");
   look(
       type, "velocities",
       [](const Simulation& s) {
         return numbers(s.coordinate_names().size(), [&](std::size_t i) { return s.velocity(i); });
       },
-      "of joints, shape (joints,), of second order and without what rings in the scheme's own [rad/s or m/s]");
+      "velocities of joints, shape (joints,), of second order and without the numerical oscillations of the scheme's "
+      "own velocities [rad/s or m/s]");
   look(
       type, "efforts",
       [](const Simulation& s) {
         return numbers(s.coordinate_names().size(), [&](std::size_t i) { return s.effort(i); });
       },
-      "of joints, shape (joints,): applied in the last step; where a motion is prescribed, what drives it [N m or N]");
+      "efforts of joints, shape (joints,): applied in the last step; for a prescribed motion the effort that it needs "
+      "[N m or N]");
 }
 
 void bind_sums(SimulationClass& type) {
@@ -115,16 +119,16 @@ void bind_sums(SimulationClass& type) {
         const Energies e = s.energies();
         return make("flexarm.values", "Energies", e.kinetic, e.strain, e.potential, e.total(), e.work, e.dissipated);
       },
-      "Energies: kinetic, strain, potential, total, and since the start work and dissipated [J]");
+      "Energies: kinetic, strain, potential and total; work and dissipated are totals since the start [J]");
   look(
       type, "momentum", [](const Simulation& s) { return numbers(3, [m = s.momentum()](int i) { return m[i]; }); },
-      "shape (3,) [kg m/s]");
+      "linear momentum, shape (3,) [kg m/s]");
   look(
       type, "angular_momentum",
       [](const Simulation& s) { return numbers(3, [m = s.angular_momentum()](int i) { return m[i]; }); },
-      "about the world's origin, shape (3,) [kg m^2/s]");
+      "angular momentum about the world's origin, shape (3,) [kg m^2/s]");
   look(
-      type, "mass", [](const Simulation& s) { return s.mass(); }, "of all that moves [kg]");
+      type, "mass", [](const Simulation& s) { return s.mass(); }, "mass of all moving parts [kg]");
 }
 
 py::list contacts(const Simulation& simulation) {
@@ -140,22 +144,22 @@ py::list contacts(const Simulation& simulation) {
 
 void bind_contacts(SimulationClass& type) {
   look(type, "contacts", &contacts,
-       "where links touch each other and grounds now: a list of Contact, one for each point: first, second, position, "
-       "normal, force, penetration");
+       "points in which links touch each other or grounds: a list of Contact, with first, second, position, normal, "
+       "force, penetration");
 }
 
 void bind_settings(SimulationClass& type) {
   type.def_property_readonly(
-      "scene", [](const GuardedSimulation& s) { return s.scene(); }, "the Scene of which it was made");
+      "scene", [](const GuardedSimulation& s) { return s.scene(); }, "the Scene from which it was built");
   look(
-      type, "time", [](const Simulation& s) { return s.time(); }, "[s]");
+      type, "time", [](const Simulation& s) { return s.time(); }, "simulated time [s]");
   look(
-      type, "scheme", [](const Simulation& s) { return s.scheme(); }, "of time integration, the one in use");
+      type, "scheme", [](const Simulation& s) { return s.scheme(); }, "scheme of time integration in use");
   look(
-      type, "node_count", [](const Simulation& s) { return s.node_count(); }, "nodes of the model");
+      type, "node_count", [](const Simulation& s) { return s.node_count(); }, "number of nodes");
   look(
       type, "degrees_of_freedom", [](const Simulation& s) { return s.degrees_of_freedom(); },
-      "unknowns of Newton's method");
+      "number of unknowns in Newton's method");
   type.def_property(
       "step_size", [](GuardedSimulation& s) { return s.use().step_size(); },
       [](GuardedSimulation& s, double step) { s.use().set_step_size(step); },
@@ -163,7 +167,7 @@ void bind_settings(SimulationClass& type) {
   type.def_property(
       "tolerance", [](GuardedSimulation& s) { return s.use().tolerance(); },
       [](GuardedSimulation& s, double tolerance) { s.use().set_tolerance(tolerance); },
-      "of Newton's method: of its last update, relative to the scene's length and to 1 rad");
+      "tolerance of Newton's method: limit of its last update, relative to the scene's length and to 1 rad");
 }
 
 }  // namespace
@@ -172,13 +176,14 @@ void bind_looks(SimulationClass& type) {
   type.def(py::init(&simulation_of), R"(Builds a simulation of a scene.
 
 scene: a Scene, or the path of its file, which is read as read_scene(path) does.
-scheme, step [s], tolerance: in place of the scene's.
-reuse_factorisation: keeps factors of the tangent while Newton's method contracts well; False: a restored state goes on
-  bit for bit.
-on_failure: 'stop' or 'dissipate' (steps that fail are done by edmc2), in place of the scene's.
-recovery_wall_time: ends a step that has been halved after so long by the clock on the wall; 0: never [s].
+scheme, step [s], tolerance: replace those of the scene.
+reuse_factorisation: keeps the factorised tangent while Newton's method converges fast. With False, a run from a
+  restored state has the same bits as the original one.
+on_failure: 'stop' or 'dissipate' (edmc2 does steps that fail), instead of the scene's.
+recovery_wall_time: a step that was halved fails after this wall time [s]; 0: no limit.
 
-Raises SceneError if the file has errors or the scene is impossible as a mechanism; what is doubtful about its start is a SceneWarning.)",
+Raises SceneError if the file has errors or the scene is impossible as a mechanism; warns (SceneWarning) of a doubtful
+start.)",
            py::arg("scene"), py::arg("scheme") = py::none(), py::arg("step") = py::none(),
            py::arg("tolerance") = py::none(), py::arg("reuse_factorisation") = true, py::arg("on_failure") = py::none(),
            py::arg("recovery_wall_time") = 0.0);

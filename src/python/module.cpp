@@ -1,4 +1,4 @@
-/// The extension module flexarm._flexarm: the façade for Python. docs/python.md
+/// The extension module flexarm._flexarm: the façade for Python (docs/python.md).
 
 #include "python/bindings.h"
 
@@ -11,11 +11,11 @@ constexpr const char* kSimulationText = R"(A scene in motion.
     Simulation(scene, scheme=None, step=None, tolerance=None, reuse_factorisation=True, on_failure=None,
                recovery_wall_time=0)
 
-SI units and radians throughout; world axes but where another frame is named; arrays are of float64, and copies. Joints
-are coordinates: a joint with several of them has one name for each ("wrist/rx"). Where a joint, link or sensor is asked
-for, its name will do, or its index in the list of names. copy.copy() makes another one in the same state.
+SI units and radians throughout; world axes unless another frame is named; arrays are of float64, and copies. Joints
+are coordinates: a joint with several of them has one name for each ("wrist/rx"). A joint, link or sensor is given by
+its name or by its index in the list of names. copy.copy() makes another simulation in the same state.
 
-One thread at a time may use a simulation; while it steps, others run, with simulations of their own.)";
+One thread at a time may use a simulation; while it steps, other threads run, with simulations of their own.)";
 
 }  // namespace
 
@@ -38,4 +38,5 @@ PYBIND11_MODULE(_flexarm, module) {
   bind_sensitivities(module, simulation);
   bind_accurate_run(simulation);
   bind_tuning(module);
+  bind_recordings(module);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Joints, links, probes and sensors, as Python names them.
+/// Finds joints, links, probes and sensors by name or index.
 
 #include <cstddef>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace flexarm::python {
 
-/// A name, or its place in the list of names.
+/// A name, or its index in the list of names.
 using Key = std::variant<std::size_t, std::string>;
 
 template <class Things>
@@ -20,7 +20,7 @@ std::vector<std::string> names_of(const Things& things) {
   return names;
 }
 
-// Indices; @throws std::invalid_argument where there is none, with the names that there are.
+// The index. @throws std::invalid_argument with the existing names, if there is no such name or index
 std::size_t joint_index(const Simulation& simulation, const Key& joint);
 std::size_t link_index(const Simulation& simulation, const Key& link);
 std::size_t probe_index(const Simulation& simulation, const Key& probe);
@@ -29,7 +29,7 @@ std::size_t sensor_index(const Simulation& simulation, const Key& sensor);
 std::vector<std::string> probe_names(const Simulation& simulation);
 std::vector<std::string> sensor_names(const Simulation& simulation);
 
-/// Joint coordinates for which something holds, in their order.
+/// Joint coordinates that meet a condition, in order.
 template <class Condition>
 std::vector<std::string> joints_where(const Simulation& simulation, const Condition& holds) {
   std::vector<std::string> names;
@@ -37,9 +37,9 @@ std::vector<std::string> joints_where(const Simulation& simulation, const Condit
     if (holds(i)) names.push_back(simulation.coordinate_names()[i]);
   return names;
 }
-/// Those that take commands of efforts.
+/// Joints that take commands of efforts.
 std::vector<std::string> effort_joints(const Simulation& simulation);
-/// Those with servos.
+/// Joints with servos.
 std::vector<std::string> servo_joints(const Simulation& simulation);
 
 }  // namespace flexarm::python

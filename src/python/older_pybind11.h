@@ -1,5 +1,5 @@
 #pragma once
-/// What pybind11 has from version 2.6 on, for older ones (Ubuntu 20.04 has 2.4).
+/// Features of pybind11 2.6 for older versions (Ubuntu 20.04 has 2.4).
 
 #include <pybind11/pybind11.h>
 
@@ -9,7 +9,7 @@ namespace pybind11 {
 
 using module_ = module;
 
-/// With the older ones, arguments behind it may be given by their places, too.
+/// A stand-in: before 2.6, the arguments that follow it may also be given by position.
 struct kw_only {};
 
 namespace detail {

@@ -1,5 +1,5 @@
 #pragma once
-/// Paths as Python gives them: str, bytes, pathlib.Path. pybind11 has this itself from version 2.7 on.
+/// Accepts paths from Python: str, bytes, pathlib.Path. From version 2.7 on, pybind11 can do this itself.
 
 #include <string>
 
@@ -21,7 +21,7 @@ struct type_caster<flexarm::python::PathArgument> {
 
   bool load(handle source, bool) {
     PyObject* bytes = nullptr;
-    if (!PyUnicode_FSConverter(source.ptr(), &bytes)) {  // what is no path, or has a null character in it
+    if (!PyUnicode_FSConverter(source.ptr(), &bytes)) {  // not a path, or a text with a null character
       PyErr_Clear();
       return false;
     }

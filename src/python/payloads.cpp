@@ -18,7 +18,7 @@ Vector3 vector_of(const Three& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// What the edited scene cannot be is an error of a scene.
+/// Edits the scene. A ModelError of the new scene becomes a SceneError.
 template <class Edit>
 void edit_scene(GuardedSimulation& guarded, const Edit& edit) {
   try {
@@ -46,21 +46,22 @@ void bind_payloads(SimulationClass& type) {
           },
           R"(Fixes a link that floats, with all that it carries, to another link, where it is.
 
-Momenta stay; what the impact loses of the energy counts as dissipated. Joints, links, probes and sensors may have other
-places in their lists afterwards, and States of before do not fit any more; so it is with detach(), spawn() and
-remove(). Raises ValueError that says why it cannot be; nothing has changed then.)",
+Momenta are conserved; the energy lost by the impact counts as dissipated. Afterwards joints, links, probes and sensors
+may have other indices, and earlier States cannot be restored; the same holds for detach(), spawn() and remove(). Raises
+ValueError, and changes nothing, if it is impossible.)",
           py::arg("link"), py::arg("to"))
       .def(
           "detach",
           [](GuardedSimulation& guarded, const std::string& link) {
             edit_scene(guarded, [&](Simulation& simulation) { detach(simulation, link); });
           },
-          "Frees a link that hangs on a fixed joint: it flies on as it moves.", py::arg("link"))
+          "Removes the fixed joint that carries a link, which then moves freely with its present velocity.",
+          py::arg("link"))
       .def("spawn", &spawn_model,
            R"(Adds the links and joints of another Scene, its root link floating at a pose, with a velocity.
 
-orientation: quaternion x y z w. linear, angular: of the root link's origin, world axes [m/s, rad/s]. prefix: put before
-the names of its links, joints, sensors and probes.)",
+orientation: quaternion x y z w. linear, angular: velocities of the root link's origin, world axes [m/s, rad/s]. prefix:
+put before the names of its links, joints, sensors and probes.)",
            py::arg("model"), py::arg("position") = Three{0, 0, 0},
            py::arg("orientation") = std::array<double, 4>{0, 0, 0, 1}, py::arg("linear") = Three{0, 0, 0},
            py::arg("angular") = Three{0, 0, 0}, py::arg("prefix") = "")
@@ -69,7 +70,7 @@ the names of its links, joints, sensors and probes.)",
           [](GuardedSimulation& guarded, const std::string& link) {
             edit_scene(guarded, [&](Simulation& simulation) { remove(simulation, link); });
           },
-          "Takes a link away, with all that it carries.", py::arg("link"));
+          "Removes a link and all that it carries.", py::arg("link"));
 }
 
 }  // namespace flexarm::python

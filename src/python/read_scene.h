@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes as Python has them: they can be read once more.
+/// Scenes that can be read again with other values of their parameters.
 
 #include <functional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace flexarm::python {
 
-/// Reads a scene once more, with another value of one parameter.
+/// Reads the scene again, with another value of one parameter.
 using SceneReader = std::function<scene::ReadResult(const std::string& parameter, double value)>;
 
 struct ReadScene : scene::SceneDescription {

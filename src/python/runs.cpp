@@ -16,7 +16,7 @@ namespace flexarm::python {
 namespace {
 
 using Patterns = std::vector<std::string>;
-/// Converted from nothing: results go where they are wanted, or nowhere.
+/// Without forcecast, so that an array of another type is refused: results would go into a copy.
 using Results = py::array_t<double, py::array::c_style>;
 
 StepResult step(GuardedSimulation& guarded) {
@@ -26,7 +26,7 @@ StepResult step(GuardedSimulation& guarded) {
   return result;
 }
 
-/// Rows of results, one every so many steps.
+/// Records a row of results after every `every` steps.
 class Recorder {
  public:
   Recorder(ResultColumns* columns, double* place, long every) : columns_(columns), place_(place), every_(every) {}
@@ -67,7 +67,7 @@ py::object run(GuardedSimulation& guarded, long steps, const std::optional<Array
                const std::optional<Results>& out) {
   require(steps >= 0, "steps", "a number >= 0", steps);
   require(every >= 1, "every", "a number >= 1", every);
-  if (out && !record) throw std::invalid_argument("out: expected with the columns that it shall have, 'record'");
+  if (out && !record) throw std::invalid_argument("out: expected only with 'record', which names its columns");
   const EffortRows commands(guarded.use(), efforts, joints, steps);
   ResultColumns* const columns = record ? &guarded.columns(*record) : nullptr;
   Results results = columns ? room_for(out, steps / every, *columns) : Results(std::vector<py::ssize_t>{0, 0});
@@ -104,32 +104,33 @@ py::array_t<double> row(GuardedSimulation& guarded, const Patterns& patterns) {
 }  // namespace
 
 void bind_runs(SimulationClass& type) {
-  type.def("step", &step, R"(Advances by one step, in smaller sub-steps where Newton's method asks for it.
+  type.def("step", &step, R"(Advances by one step, in smaller sub-steps if Newton's method does not converge.
 
-Returns a StepResult. Raises StepError if it fails, with the state that of the last good sub-step.)")
-      .def("run", &run, R"(Advances by so many steps while other threads run.
+Returns a StepResult. Raises StepError if it fails, with the state after the last good sub-step.)")
+      .def("run", &run, R"(Advances by a number of steps; other threads can run at the same time.
 
-steps: how many.
-efforts: commanded before each of them, shape (steps, joints), or (joints,): the same for all [N m or N]. Where it is a
-  C-contiguous array of float64 it is read where it is. The last ones stay commanded.
-joints: of the columns of `efforts`, by names or indices; None: all of effort_joints.
-record: patterns of the columns to be recorded, as `flexarm simulate --columns` takes them (["joint/elbow/[pv]*", "energy/total"]);
-  the time is always the first one, the others are in their order. []: all. None: nothing is recorded.
-every: a row is recorded after every so many steps.
-out: for the results, in place of a new array: C-contiguous, of float64.
+steps: number of steps.
+efforts: commanded before each step, shape (steps, joints), or (joints,): the same for all [N m or N]. A C-contiguous
+  array of float64 is not copied. The last efforts stay commanded after the run.
+joints: names or indices for the columns of `efforts`; None: all of effort_joints.
+record: patterns of the columns to be recorded, as for `flexarm simulate --columns` (["joint/elbow/[pv]*", "energy/total"]);
+  the time is always the first column, the others are in the order of the patterns. []: all. None: nothing is recorded.
+every: number of steps between recorded rows.
+out: array for the results, instead of a new one: C-contiguous, of float64.
 
 Returns an array of the shape (steps // every, columns), see columns(); None if nothing is recorded. Raises StepError if
-a step fails, with the rows until then; ValueError, before the first step, if an effort is not finite or a shape wrong.)",
+a step fails, with the rows until then; ValueError, before the first step, if an effort is not finite or a shape is
+wrong.)",
            py::arg("steps"), py::arg("efforts") = py::none(), py::arg("joints") = py::none(),
            py::arg("record") = py::none(), py::arg("every") = 1, py::arg("out").noconvert() = py::none())
-      .def(
-          "columns", &columns,
-          R"(Names and units of the columns that fit one of the patterns; of all that run() records where there are none.
+      .def("columns", &columns,
+           R"(Names and units of the columns that match one of the patterns; without patterns, of all columns.
 
-record: patterns as a shell's, ["energy/total", "probe/hand/[xyz]"]. Returns a list of pairs.
-Raises ValueError naming a pattern that no column fits. docs/results.md says what there is.)",
-          py::arg("record") = Patterns())
-      .def("row", &row, "Their values now, shape (columns,), as run() records them, solver's counts being zero.",
+record: patterns as in a shell, ["energy/total", "probe/hand/[xyz]"]. Returns a list of pairs.
+Raises ValueError if a pattern matches no column. docs/results.md lists all columns.)",
+           py::arg("record") = Patterns())
+      .def("row", &row,
+           "Present values of the columns, shape (columns,), as run() records them; counts of the solver are zero.",
            py::arg("record") = Patterns());
 }
 

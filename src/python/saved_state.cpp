@@ -15,14 +15,14 @@ namespace flexarm::python {
 std::string SavedState::text() const {
   if (!origin_) return text_;
   if (family_ != origin_->family())
-    throw std::runtime_error("links have come or gone since this state was: it can be restored no more");
+    throw std::runtime_error("links were added or removed after this state was saved: it can no longer be restored");
   Simulation copy = origin_->use().copy();
   copy.restore(snapshot_);
   return checkpoint_text(copy);
 }
 
 void SavedState::give_to(GuardedSimulation& simulation) const {
-  // Simulations made of the same Scene twice share no snapshots, but their checkpoints fit.
+  // Two simulations made from the same Scene cannot exchange snapshots, but they can exchange checkpoints.
   if (origin_ && family_ == simulation.family()) {
     simulation.use().restore(snapshot_);
     return;
@@ -45,11 +45,12 @@ Pointer copy_of(GuardedSimulation& simulation) {
 }  // namespace
 
 void bind_state(py::module_& module, SimulationClass& type) {
-  py::class_<SavedState> state(module, "State", R"(All of a simulation that time changes, commands included: a value.
+  py::class_<SavedState> state(module, "State",
+                               R"(Everything in a simulation that changes over time, including commands; immutable.
 
-Simulation.snapshot() makes it, Simulation.restore() goes back to it. It can be pickled, and bytes(state) are what
-write_checkpoint() writes; State(bytes) makes one of them. To restore one in another process, make a simulation of the
-same scene there.)");
+Simulation.snapshot() makes it, Simulation.restore() returns to it. It can be pickled. bytes(state) has the contents of
+a file of write_checkpoint(), and State(bytes) makes a state from them. To restore a state in another process, make a
+simulation of the same scene there.)");
   state.attr("__module__") = "flexarm";
   state.def(py::init([](const py::bytes& text) { return SavedState(std::string(text)); }), py::arg("checkpoint"))
       .def("__bytes__", [](const SavedState& s) { return py::bytes(s.text()); })
@@ -60,18 +61,18 @@ same scene there.)");
                       [](const py::bytes& text) { return SavedState(std::string(text)); }));
 
   type.def(
-          "snapshot", [](const Pointer& s) { return SavedState(s); }, "What it is like now, as a State.")
+          "snapshot", [](const Pointer& s) { return SavedState(s); }, "The present state, as a State.")
       .def(
           "restore", [](GuardedSimulation& s, const SavedState& saved) { saved.give_to(s); },
-          R"(Goes back to a State, commands included.
+          R"(Returns to a State, including its commands.
 
-Raises ValueError if it is another scene's, scheme's or step's; nothing has changed then. Bit for bit the motion goes on
-as it did with reuse_factorisation=False, else to far below Newton's tolerance.)",
+Raises ValueError, and changes nothing, if the scene, scheme or step differs. The motion continues as the original one:
+with the same bits if reuse_factorisation=False, otherwise with differences far below Newton's tolerance.)",
           py::arg("state"))
       .def(
           "reset", [](GuardedSimulation& s) { s.use().reset(); },
-          "Goes back to the scene's initial state; commands are forgotten.")
-      .def("__copy__", &copy_of, "Another one of the same scene and settings, in the same state.")
+          "Returns to the scene's initial state, without commands.")
+      .def("__copy__", &copy_of, "A copy with the same scene and settings, in the same state.")
       .def(
           "__deepcopy__", [](GuardedSimulation& s, const py::dict&) { return copy_of(s); }, py::arg("memo"))
       .def(
@@ -80,9 +81,10 @@ as it did with reuse_factorisation=False, else to far below Newton's tolerance.)
             const Simulation& from = other.use();
             s.use().take_over(from);
           },
-          R"(Goes on from where another one is, of the same scene but for its integrator, gravity and gains of servos.
+          R"(Continues from the state of another simulation.
 
-Joints and links stand and move as they did. Raises ValueError if it is not the same mechanism.)",
+The scenes may differ in integrator, gravity and gains of servos. Positions and velocities of joints and links are kept.
+Raises ValueError if it is not the same mechanism.)",
           py::arg("other"))
       .def(
           "write_checkpoint",

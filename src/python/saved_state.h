@@ -1,5 +1,5 @@
 #pragma once
-/// A state of a simulation as a value of Python's.
+/// A state of a simulation as a Python object.
 
 #include <memory>
 #include <string>
@@ -8,23 +8,24 @@
 
 namespace flexarm::python {
 
-/// A snapshot beside the simulation that it is of; or, where it came from elsewhere, the text of a checkpoint.
+/// A snapshot together with its simulation, or the text of a checkpoint that came from elsewhere.
 class SavedState {
  public:
   explicit SavedState(const std::shared_ptr<GuardedSimulation>& origin)
       : snapshot_(origin->use().snapshot()), origin_(origin), family_(origin->family()) {}
   explicit SavedState(std::string text) : text_(std::move(text)) {}
 
-  /// As write_checkpoint() writes it.
-  /// @throws std::runtime_error if another thread works on the simulation that it is of, or its scene was edited since.
+  /// The text of the checkpoint, as write_checkpoint() writes it.
+  /// @throws std::runtime_error if another thread works on the snapshot's simulation, or if its scene was edited since
   std::string text() const;
-  /// @throws std::invalid_argument if it is another scene's, scheme's or step's; nothing has changed then.
+  /// Restores the state in a simulation.
+  /// @throws std::invalid_argument if scene, scheme or step differ; then nothing has changed
   void give_to(GuardedSimulation& simulation) const;
 
  private:
   Snapshot snapshot_;
-  std::shared_ptr<GuardedSimulation> origin_;  // null: the text is all there is
-  std::shared_ptr<const char> family_;         // of the origin then
+  std::shared_ptr<GuardedSimulation> origin_;  // null: there is only the text
+  std::shared_ptr<const char> family_;         // of origin_ when the snapshot was taken
   std::string text_;
 };
 

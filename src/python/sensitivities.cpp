@@ -18,7 +18,7 @@ namespace {
 
 using Patterns = std::vector<std::string>;
 
-/// Sensitivities beside the simulation of a program of Python's.
+/// Sensitivities of a simulation that Python code uses.
 class GuardedSensitivities {
  public:
   GuardedSensitivities(std::shared_ptr<GuardedSimulation> simulation, const SensitivityRequest& request)
@@ -27,7 +27,7 @@ class GuardedSensitivities {
 
   GuardedSimulation& simulation() { return *simulation_; }
   std::shared_ptr<GuardedSimulation> pointer() const { return simulation_; }
-  /// `work(sensitivities, simulation)`, while other threads of Python's run.
+  /// Calls `work(sensitivities, simulation)` without the GIL, so that other Python threads can run.
   template <class Work>
   auto work(const Work& work) {
     return simulation_->work([&](Simulation& simulation) { return work(own_, simulation); });
@@ -45,7 +45,7 @@ class GuardedSensitivities {
 std::unique_ptr<GuardedSensitivities> sensitivities_of(const std::shared_ptr<GuardedSimulation>& simulation,
                                                        const std::vector<std::string>& parameters, bool initial_state) {
   if (simulation->is_edited())
-    throw std::invalid_argument("sensitivities are of a scene as it was read, and links have come or gone since");
+    throw std::invalid_argument("sensitivities are not available after links were added to or removed from the scene");
   try {
     return std::make_unique<GuardedSensitivities>(
         simulation, SensitivityRequest{parameters, simulation->scene()->read, initial_state});
@@ -61,7 +61,7 @@ StepResult step_with_derivatives(GuardedSensitivities& guarded) {
   return result;
 }
 
-/// Derivatives of a row of results.
+/// The derivatives of a row of results.
 Eigen::MatrixXd derivatives(const Sensitivities& own, ResultColumns& columns) {
   return own.of([&](const Simulation& simulation) -> Eigen::VectorXd {
     const std::vector<double>& row = columns.row(simulation, {});
@@ -101,29 +101,32 @@ py::object run_with_derivatives(GuardedSensitivities& guarded, long steps, const
 }
 
 constexpr const char* kClass =
-    R"(Derivatives of the run of a simulation, which goes on with the same bits as without them.
+    R"(Derivatives of a simulation's run; the run itself has the same bits as without them.
 
-Columns of all arrays are the directions: parameters in the order asked for, then states at the start. They are NaN once
-`lost` says why there are none: where a slider leaves its line, a step fails. At stops and dry friction they have the time
-of the event as it changes; `events` tells where that is doubtful. docs/notes/sensitivities.md)";
+Columns of all arrays are the directions: parameters in the given order, then states at the start. They are NaN after
+they were lost (`lost` has the reason: a slider left its line, a step failed). At events of stops and dry friction they
+include the change of the event's time; `events` lists all of them and says which are doubtful.
+docs/notes/sensitivities.md)";
 
-constexpr const char* kMake = R"(Sensitivities of the run that begins now, of a simulation that is at its start.
+constexpr const char* kMake = R"(Sensitivities of the run that begins now; the simulation must be at its start.
 
 parameters: names of parameters of the scene.
-initial_state: the states of linear models about the start, too (LinearModel.states): positions, then their rates.
+initial_state: also with respect to the states of linear models about the start (LinearModel.states): positions, then
+  their rates.
 
-Steps are those of the object that is returned, whose `simulation` this is. Raises ValueError if a parameter is unknown, or
-changes what no derivative tells (numbers of elements, the step), and if the simulation has moved; SceneError if its scheme
-has none; RuntimeError for initial states at a dead point.)";
+Make the steps with the returned object, whose `simulation` is this one. Raises ValueError if a parameter is unknown, or
+changes something without a derivative (numbers of elements, the step), or if the simulation has moved; SceneError if
+the scheme does not support sensitivities; RuntimeError for initial states at a dead point.)";
 
-constexpr const char* kRun = R"(Advances by so many steps while other threads run.
+constexpr const char* kRun = R"(Advances by a number of steps; other threads can run at the same time.
 
-steps, efforts, joints: as Simulation.run() takes them.
-record: patterns of the columns whose derivatives are recorded (["joint/elbow/[pv]*", "probe/tip/[xyz]"]); []: all. None: nothing.
-every: they are recorded after every so many steps.
+steps, efforts, joints: as for Simulation.run().
+record: patterns of the columns whose derivatives are recorded (["joint/elbow/[pv]*", "probe/tip/[xyz]"]); []: all.
+  None: nothing.
+every: number of steps between recorded rows.
 
-Returns an array of the shape (steps // every, columns, directions), in the order of simulation.columns(record), the time
-first; per unit of the parameter or the state. None if nothing is recorded. Raises StepError if a step fails.)";
+Returns an array of the shape (steps // every, columns, directions), in the order of simulation.columns(record), the
+time first; per unit of the parameter or the state. None if nothing is recorded. Raises StepError if a step fails.)";
 
 }  // namespace
 
@@ -132,8 +135,9 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
   event.attr("__module__") = "flexarm";
   event.def_readonly("time", &RunEvent::time, "[s]")
       .def_readonly("joint", &RunEvent::joint, "name of the coordinate")
-      .def_readonly("what", &RunEvent::what, "has happened: 'touches its stop', 'sticks', ...")
-      .def_readonly("doubt", &RunEvent::doubt, "why derivatives behind it are not to be trusted; empty: they are")
+      .def_readonly("what", &RunEvent::what, "event that happened: 'touches its stop', 'sticks', ...")
+      .def_readonly("doubt", &RunEvent::doubt,
+                    "reason why derivatives after the event may be wrong; empty if there is none")
       .def("__repr__", [](const RunEvent& own) {
         return fmt::format("<flexarm.RunEvent: t = {:.9g} s, '{}' {}{}>", own.time, own.joint, own.what,
                            own.doubt.empty() ? "" : ", doubtful");
@@ -141,15 +145,16 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
   py::class_<GuardedSensitivities> type(module, "Sensitivities", kClass);
   type.attr("__module__") = "flexarm";
   type.def_property_readonly(
-          "simulation", [](const GuardedSensitivities& own) { return own.pointer(); }, "Whose run it is.")
+          "simulation", [](const GuardedSensitivities& own) { return own.pointer(); },
+          "The simulation whose run is differentiated.")
       .def_property_readonly(
-          "directions", [](GuardedSensitivities& own) { return own.look().directions(); }, "Names.")
+          "directions", [](GuardedSensitivities& own) { return own.look().directions(); }, "Names of the directions.")
       .def_property_readonly(
           "lost", [](GuardedSensitivities& own) { return own.look().lost(); },
-          "Why there are no derivatives any more; empty: there are.")
+          "Reason why derivatives were lost; empty if they were not.")
       .def_property_readonly(
           "events", [](GuardedSensitivities& own) { return own.look().events(); },
-          "What stops and dry friction have done in the run so far: a list of RunEvent.")
+          "Events of stops and dry friction in the run so far: a list of RunEvent.")
       .def("step", &step_with_derivatives,
            "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
       .def("run", &run_with_derivatives, kRun, py::arg("steps"), py::arg("efforts") = py::none(),
@@ -160,33 +165,34 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
             ResultColumns& columns = own.simulation().columns(record);
             return derivatives(own.look(), columns);
           },
-          R"(Of Simulation.row(record) now, shape (columns, directions); 0 of the time.)", py::arg("record"))
+          R"(Derivatives of the present Simulation.row(record), shape (columns, directions); that of the time is 0.)",
+          py::arg("record"))
       .def_property_readonly(
           "positions", [](GuardedSensitivities& own) { return own.look().positions(); },
-          "Of joints' positions, shape (joints, directions) [rad or m per unit].")
+          "Derivatives of joints' positions, shape (joints, directions) [rad or m per unit].")
       .def_property_readonly(
           "velocities", [](GuardedSensitivities& own) { return own.look().velocities(); },
-          "Of joints' velocities, shape (joints, directions) [rad/s or m/s per unit].")
+          "Derivatives of joints' velocities, shape (joints, directions) [rad/s or m/s per unit].")
       .def(
           "probe",
           [](GuardedSensitivities& own, const Key& probe) {
             return own.look().probe(probe_index(own.simulation().use(), probe));
           },
-          R"(Of a probe: {position, small rotation, velocity, angular velocity}, world axes, shape (12, directions).
+          R"(Derivatives of a probe, shape (12, directions): position, small rotation, velocity, angular velocity.
 
-probe: name or index.)",
+They are in world axes. probe: name or index.)",
           py::arg("probe"))
       .def(
           "outputs",
           [](GuardedSensitivities& own, const std::vector<std::string>& names) { return own.look().outputs(names); },
-          R"(Of outputs of linear models, shape (outputs, directions).
+          R"(Derivatives of outputs of linear models, shape (outputs, directions).
 
-names: as linearise() takes them: position: and velocity: of joints and points, acceleration: of points, effort: of driven
+names: as for linearise(): position: and velocity: of joints and points, acceleration: of points, effort: of driven
 joints; none: positions of joints and probes. Raises ValueError if there is no such output.)",
           py::arg("names") = std::vector<std::string>())
       .def_property_readonly(
           "states", [](GuardedSensitivities& own) { return own.look().states(); },
-          R"(Of the states of linear models about now, shape (states, directions).
+          R"(Derivatives of the states of linear models about the present state, shape (states, directions).
 
 The columns of the initial states are the matrix dx(t)/dx(0).)")
       .def_property_readonly(

@@ -1,14 +1,14 @@
 #pragma once
-/// Ctrl-C in long work.
+/// Lets Ctrl-C interrupt long work in C++.
 
 #include <chrono>
 
 namespace flexarm::python {
 
-/// Lets Python see to signals now and then, from where its lock is not held.
+/// Checks for signals from time to time, in code that does not hold the GIL.
 class SignalClock {
  public:
-  /// True: an exception of Python's is pending; the work is to end.
+  /// Returns true if a Python exception is pending; then the work must end.
   bool is_interrupted();
 
  private:

@@ -70,13 +70,13 @@ void bind_tuning(py::module_& module) {
   module.def("tune", &tune_scene, R"(Finds the cheapest meshes, scheme, step and tolerance for an accuracy, or the most
 accurate ones for a speed, as `flexarm tune` does.
 
-accuracy: of the positions of probes (without any, of tips): the root mean square of their error over time, relative to
-  how far they move. Or
-real_time: times real time, which shall be kept with the `margin`.
-until: the end of the motion that is looked at, which is the scene's own, without commands [s].
-any_scheme: also such as do not conserve what the scene's scheme does.
-budget: time of the processor that the search may take [s].
-intervals: at whose ends points are compared, at most.
+accuracy: error of the positions of probes (of tips if there are no probes): root mean square over time, relative to
+  their largest displacement. Or
+real_time: required speed, as a multiple of real time, with the `margin`.
+until: end of the motion with which settings are compared [s]: the scene's own, without commands.
+any_scheme: also tries schemes that do not conserve what the scene's scheme conserves.
+budget: limit of the search's processor time [s].
+intervals: largest number of intervals at whose ends points are compared.
 
 Returns a Tuning. Raises AccuracyError if it finds nothing that is good enough.)",
              py::arg("scene"), py::arg("accuracy") = py::none(), py::arg("real_time") = py::none(), py::kw_only(),

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMarkerPeriod = 0.04;  // s
 
-/// A bag has no messages at 0, where a simulation starts.
+/// The stamp of the present state. Simulations start at 0, which is not a valid time in bags.
 ros::Time stamp_of(const Simulation& simulation) {
   return std::max(ros::Time(simulation.time()), ros::TIME_MIN);
 }
@@ -31,7 +31,7 @@ void BagWriter::checked(const Write& write) {
   }
 }
 
-BagWriter::BagWriter(const std::string& path, const Simulation& simulation)
+BagWriter::BagWriter(const std::string& path, const Simulation& simulation, const SceneOrigin& origin)
     : place_(path),
       states_(simulation, ""),
       markers_(simulation, simulation.scene().root_link, {},
@@ -41,12 +41,12 @@ BagWriter::BagWriter(const std::string& path, const Simulation& simulation)
   checked([&] {
     bag_.open(place_.unfinished(), rosbag::bagmode::Write);
     bag_.setCompression(rosbag::compression::LZ4);
-    write_static_transforms();
+    write_static_transforms(origin);
   });
 }
 
-/// Latched, so that players give it to who comes late.
-void BagWriter::write_static_transforms() {
+/// The message is latched, so that players also give it to late subscribers.
+void BagWriter::write_static_transforms(const SceneOrigin& origin) {
   namespace traits = ros::message_traits;
   const tf2_msgs::TFMessage message = states_.static_transforms(ros::TIME_MIN);
   const boost::shared_ptr<ros::M_string> header = boost::make_shared<ros::M_string>();
@@ -54,7 +54,9 @@ void BagWriter::write_static_transforms() {
              {"type", traits::datatype(message)},
              {"md5sum", traits::md5sum(message)},
              {"message_definition", traits::definition(message)},
-             {"latching", "1"}};
+             {"latching", "1"},
+             {"scene", origin.path},
+             {"scene_options", origin.options}};
   bag_.write("/tf_static", ros::TIME_MIN, message, header);
 }
 

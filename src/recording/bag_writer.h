@@ -1,5 +1,5 @@
 #pragma once
-/// A simulation as a ROS bag.
+/// Writes a simulation as a ROS bag.
 
 #include <string>
 #include <vector>
@@ -10,16 +10,18 @@
 #include "messages/marker_messages.h"
 #include "messages/state_messages.h"
 #include "recording/replaced_file.h"
+#include "recording/scene_origin.h"
 
 namespace flexarm::recording {
 
-/// What the node would publish, stamped with simulated time: /joint_states and /tf with each row, /beam_markers 25
-/// times a second, /sensors/NAME with each sample, /tf_static once. What was at the file's place before stays there
+/// Writes the messages that the node would publish, stamped with simulated time: /joint_states and /tf with each row,
+/// /beam_markers 25 times per second, /sensors/NAME with each sample, /tf_static once. The fields `scene` and
+/// `scene_options` of the connection of /tf_static name the scene (SceneOrigin). An older file at the same path stays
 /// until close().
 class BagWriter : public ResultWriter {
  public:
-  /// @throws std::runtime_error naming the file if it cannot be written; so do the other functions
-  BagWriter(const std::string& path, const Simulation& simulation);
+  /// @throws std::runtime_error naming the file if it cannot be written. The other functions do the same.
+  BagWriter(const std::string& path, const Simulation& simulation, const SceneOrigin& origin);
 
   void write_row(const Simulation& simulation) override;
   void note_step(const Simulation& simulation, const StepResult& result) override;
@@ -27,11 +29,11 @@ class BagWriter : public ResultWriter {
   void close() override;
 
  private:
-  /// What `write` does; errors name the file.
+  /// Calls `write`. Adds the name of the file to its errors.
   template <class Write>
   void checked(const Write& write);
   void write_samples(const Simulation& simulation);
-  void write_static_transforms();
+  void write_static_transforms(const SceneOrigin& origin);
 
   ReplacedFile place_;
   rosbag::Bag bag_;

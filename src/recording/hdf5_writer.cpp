@@ -9,9 +9,9 @@
 namespace flexarm::recording {
 namespace {
 
-/// Rows that are compressed together.
+/// Number of rows that are compressed together.
 constexpr hsize_t kChunk = 1024;
-/// Of deflate; higher ones take longer and gain little on such numbers.
+/// Level of deflate. Higher levels take longer and gain little for such numbers.
 constexpr unsigned kCompression = 1;
 
 }  // namespace
@@ -30,22 +30,27 @@ void Hdf5Writer::check(herr_t status) const {
   checked(status);
 }
 
-Hdf5Writer::Hdf5Writer(const std::string& path, const Simulation& simulation, ResultColumns columns)
+Hdf5Writer::Hdf5Writer(const std::string& path, const Simulation& simulation, ResultColumns columns,
+                       const SceneOrigin& origin)
     : place_(path),
       columns_(std::move(columns)),
-      // What the library has to say would go to the error stream.
+      // Prevents HDF5 from printing errors.
       file_((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), errno = 0,
              checked(H5Fcreate(place_.unfinished().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT))),
             H5Fclose),
       column_(kChunk) {
   add_text(file_.id(), "robot", simulation.scene().name);
   add_text(file_.id(), "scheme", simulation.scheme());
+  add_text(file_.id(), "scene", origin.path);
+  add_text(file_.id(), "scene_options", origin.options);
   const Handle scalar(checked(H5Screate(H5S_SCALAR)), H5Sclose);
   const Handle step(checked(H5Acreate2(file_.id(), "step", H5T_NATIVE_DOUBLE, scalar.id(), H5P_DEFAULT, H5P_DEFAULT)),
                     H5Aclose);
   const double size = simulation.step_size();
   check(H5Awrite(step.id(), H5T_NATIVE_DOUBLE, &size));
   for (const ResultColumn& column : columns_.columns()) add_data_set(column);
+  // Puts names and attributes at the file's begin, so that a file whose end is lost can be read up to there.
+  check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL));
   for (std::vector<double>* rows : {&rows_, &outgoing_}) rows->reserve(kChunk * columns_.columns().size());
 }
 
@@ -66,11 +71,14 @@ void Hdf5Writer::add_data_set(const ResultColumn& column) {
   check(H5Pset_chunk(storage.id(), 1, &kChunk));
   check(H5Pset_shuffle(storage.id()));
   check(H5Pset_deflate(storage.id(), kCompression));
+  // Whole chunks are written, which need no cache: one would keep them until the end.
+  const Handle access(checked(H5Pcreate(H5P_DATASET_ACCESS)), H5Pclose);
+  check(H5Pset_chunk_cache(access.id(), 0, 0, 1));
   const Handle link(checked(H5Pcreate(H5P_LINK_CREATE)), H5Pclose);
   check(H5Pset_create_intermediate_group(link.id(), 1));
   check(H5Pset_char_encoding(link.id(), H5T_CSET_UTF8));
   data_sets_.emplace_back(checked(H5Dcreate2(file_.id(), column.name.c_str(), H5T_IEEE_F64LE, space.id(), link.id(),
-                                             storage.id(), H5P_DEFAULT)),
+                                             storage.id(), access.id())),
                           H5Dclose);
   add_text(data_sets_.back().id(), "name", column.name);
   add_text(data_sets_.back().id(), "unit", column.unit);
@@ -82,7 +90,7 @@ void Hdf5Writer::write_row(const Simulation& simulation) {
   if (rows_.size() == kChunk * row.size()) begin_writing();
 }
 
-/// The library is used by one thread at a time: nothing but the task does until end_writing().
+/// HDF5 must be used by one thread at a time. So nothing but the task uses it until end_writing().
 void Hdf5Writer::begin_writing() {
   end_writing();
   std::swap(rows_, outgoing_);

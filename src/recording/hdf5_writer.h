@@ -1,5 +1,5 @@
 #pragma once
-/// Results of a simulation as an HDF5 file.
+/// Writes results of a simulation as an HDF5 file.
 
 #include <future>
 #include <string>
@@ -9,22 +9,24 @@
 
 #include "flexarm/simulation/result_writer.h"
 #include "recording/replaced_file.h"
+#include "recording/scene_origin.h"
 
 namespace flexarm::recording {
 
-/// A data set for each column, of its name ("/joint/shoulder/position"), with the attributes `name` and `unit`; of
-/// double numbers, compressed without loss, in a thread of its own while the simulation goes on. The file has the
-/// attributes `robot`, `scheme` and `step`. What was at its place before stays there until close().
+/// Writes a data set for each column, with the column's name as its path ("/joint/shoulder/position") and the
+/// attributes `name` and `unit`. Data are doubles, compressed without loss by a separate thread while the simulation
+/// continues. The file has the attributes `robot`, `scheme`, `step`, `scene` and `scene_options` (SceneOrigin). An
+/// older file at the same path stays until close().
 class Hdf5Writer : public ResultWriter {
  public:
-  /// @throws std::runtime_error naming the file if it cannot be written; so do the other functions
-  Hdf5Writer(const std::string& path, const Simulation& simulation, ResultColumns columns);
+  /// @throws std::runtime_error naming the file if it cannot be written. The other functions do the same.
+  Hdf5Writer(const std::string& path, const Simulation& simulation, ResultColumns columns, const SceneOrigin& origin);
 
   void write_row(const Simulation& simulation) override;
   void close() override;
 
  private:
-  /// An identifier of the library, with what ends it.
+  /// Owns an identifier of HDF5, with the function that closes it.
   class Handle {
    public:
     Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -52,10 +54,10 @@ class Hdf5Writer : public ResultWriter {
   ResultColumns columns_;
   Handle file_;
   std::vector<Handle> data_sets_;        // per column
-  std::vector<double> rows_, outgoing_;  // rows to come, and those that are being written
-  std::vector<double> column_;           // one column of the latter
-  hsize_t written_ = 0;                  // rows
-  std::future<void> writing_;            // the last member: what it uses outlives it
+  std::vector<double> rows_, outgoing_;  // rows for the next task; rows that the present task writes
+  std::vector<double> column_;           // scratch memory of the task: one column of outgoing_
+  hsize_t written_ = 0;                  // number of rows in the file
+  std::future<void> writing_;            // must be the last member, so that all others outlive the task
 };
 
 }  // namespace flexarm::recording

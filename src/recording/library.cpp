@@ -11,12 +11,14 @@ using namespace flexarm::recording;
 
 namespace {
 
-std::unique_ptr<ResultWriter> make_hdf5(const std::string& path, const Simulation& simulation, ResultColumns columns) {
-  return std::make_unique<Hdf5Writer>(path, simulation, std::move(columns));
+std::unique_ptr<ResultWriter> make_hdf5(const std::string& path, const Simulation& simulation, ResultColumns columns,
+                                        const SceneOrigin& origin) {
+  return std::make_unique<Hdf5Writer>(path, simulation, std::move(columns), origin);
 }
 
-std::unique_ptr<ResultWriter> make_bag(const std::string& path, const Simulation& simulation) {
-  return std::make_unique<BagWriter>(path, simulation);
+std::unique_ptr<ResultWriter> make_bag(const std::string& path, const Simulation& simulation,
+                                       const SceneOrigin& origin) {
+  return std::make_unique<BagWriter>(path, simulation, origin);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 
-/// What Mat_VarCreate() takes as something that it may change, but copies.
+/// Removes const for Mat_VarCreate(), which copies the data and does not change them.
 template <class T>
 T* copied(const T* data) {
   return const_cast<T*>(data);
@@ -29,10 +29,10 @@ Variable text(const char* name, const std::string& value) {
   return {Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, size.data(), copied(value.data()), 0), &Mat_VarFree};
 }
 
-/// A column of a cell for each.
+/// A column of cells, one per string.
 Variable cells(const char* name, const std::vector<std::string>& values) {
   std::array<size_t, 2> size = {values.size(), 1};
-  std::vector<matvar_t*> entries;  // they belong to the array then
+  std::vector<matvar_t*> entries;  // the cell array takes ownership
   for (const std::string& value : values) entries.push_back(text(nullptr, value).release());
   return {Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, size.data(), entries.data(), 0), &Mat_VarFree};
 }
@@ -41,7 +41,7 @@ Variable numbers(const char* name, const std::vector<double>& column) {
   return numbers(name, Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size())));
 }
 
-/// A matrix for each frequency, behind each other.
+/// A three-dimensional array, with one matrix per frequency.
 Variable gains(const std::vector<Eigen::MatrixXcd>& matrices) {
   std::vector<double> real, imaginary;
   for (const Eigen::MatrixXcd& matrix : matrices)
@@ -55,7 +55,7 @@ Variable gains(const std::vector<Eigen::MatrixXcd>& matrices) {
   return {Mat_VarCreate("gains", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, size.data(), &parts, MAT_F_COMPLEX), &Mat_VarFree};
 }
 
-/// As MATLAB's step() has it: times first.
+/// A three-dimensional array as MATLAB's step() returns it: the first index is that of time.
 Variable step_outputs(const std::vector<Eigen::MatrixXd>& matrices) {
   std::array<size_t, 3> size = {matrices.size(), static_cast<size_t>(matrices.front().rows()),
                                 static_cast<size_t>(matrices.front().cols())};

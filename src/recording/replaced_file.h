@@ -1,5 +1,5 @@
 #pragma once
-/// Files that other libraries write: under another name until they are complete.
+/// A file that another library writes under a temporary name, until it is complete.
 
 #include <optional>
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace flexarm::recording {
 
-/// An UnfinishedFile whose errors name it.
+/// As UnfinishedFile, with the name of the file in all errors.
 class ReplacedFile {
  public:
-  /// @throws std::runtime_error naming the file, if nothing can be put there
+  /// @throws std::runtime_error naming the file if no file can be written there
   explicit ReplacedFile(const std::string& path);
 
   const std::string& unfinished() const { return file_->temporary(); }
   /// @throws std::runtime_error naming the file, with the reason
   [[noreturn]] void fail(const std::string& reason) const;
-  /// In the place of what is there; the file has been closed.
-  /// @throws std::runtime_error naming the file, if that cannot be
+  /// Replaces an older file by the new one, which must be closed.
+  /// @throws std::runtime_error naming the file if that fails
   void put_in_place();
 
  private:

@@ -27,7 +27,7 @@ using node::Command;
 using node::Commanded;
 using rosbag::MessageInstance;
 
-/// Of the run.
+/// Pace of the recorded run.
 node::Pace pace_of(const ReplayOptions& options) {
   node::Pace pace;
   pace.lock_step = options.lock_step;
@@ -35,10 +35,10 @@ node::Pace pace_of(const ReplayOptions& options) {
   return pace;
 }
 
-/// By how many steps each command of a bag acts later than its time says; empty: none does.
+/// For each command of a bag: by how many steps it acts later than at its recorded time. Empty: none does.
 using Shifts = std::vector<int>;
 
-/// The node's own way from messages to steps, but for the clock: each step is made where the bag has its state.
+/// Processes messages like the node, but without a clock: it steps to the times of the states in the bag.
 class Replay {
  public:
   Replay(Simulation simulation, const ReplayOptions& options, Shifts shifts = {})
@@ -75,13 +75,13 @@ class Replay {
     return report_;
   }
 
-  /// After run(): of all coordinates, at one state after the other.
+  /// After run(): positions of all coordinates, for one state after the other.
   const std::vector<double>& positions() const { return positions_; }
-  /// The same as the bag has them; nan where it has none.
+  /// The same positions as recorded in the bag; NaN if missing.
   const std::vector<double>& recorded() const { return recorded_; }
   const std::vector<double>& times() const { return times_; }
-  /// After run(): by how many steps each command may have acted earlier because the steps were late then: what their
-  /// states took to come, beyond the least that one took.
+  /// After run(): for each command, by how many steps it may have acted earlier because the run was late. The delay of
+  /// a state is its arrival time minus its stamp; lateness is the delay minus the smallest delay of all states.
   std::vector<int> lateness() const {
     std::vector<double> delays;
     for (std::size_t i = 0; i < states_.size(); ++i)
@@ -112,7 +112,7 @@ class Replay {
                        ros::message_traits::datatype<Message>()));
     return out;
   }
-  /// Without the namespace; empty if it is another one.
+  /// The topic without the namespace; empty if it is in another namespace.
   std::string own(const std::string& topic) const {
     return topic.compare(0, options_.ns.size(), options_.ns) == 0 ? topic.substr(options_.ns.size()) : "";
   }
@@ -121,9 +121,9 @@ class Replay {
            topic == "/joint_trajectory" || topics_.count(topic) > 0;
   }
 
-  // ---- when
-  /// A run that was paused at its start has its first state with an older stamp; the next one is due at once when it
-  /// goes on, and is that after one step.
+  // ---- times
+  /// Finds the time of the start. If a run was paused at its start, its first state has an older stamp. When it
+  /// continues, the next state is due at once, and is that after one step.
   void find_begin() {
     period_ = thread_.simulation().step_size() / pace_of(options_).per_stamp(has_clock_);
     begin_ = states_.front()->header.stamp;
@@ -133,14 +133,14 @@ class Replay {
     if (was_paused_) begin_ = second - ros::Duration(period_);
   }
 
-  /// Each command makes a step, and each step has its state.
+  /// Replays a run in lock step: each command causes one step, and each step one state.
   void step_by(const std::vector<MessageInstance>& commands) {
     compare(*states_.front());
     for (const MessageInstance& message : commands) {
       if (!give(message)) continue;
       step();
       if (steps_ >= states_.size())
-        fail(fmt::format("in lock step each command makes a state, but it has {} states only", states_.size()));
+        fail(fmt::format("in lock step each command makes a state, but the bag has only {} states", states_.size()));
       compare(*states_[steps_]);
     }
     if (steps_ + 1 != states_.size())
@@ -148,8 +148,9 @@ class Replay {
                        states_.size() - 1, steps_));
   }
 
-  /// States say by their stamps after how many steps they are. A command acts in the steps that begin later: a step of
-  /// the wall clock's pace begins when its state is due, one that is the clock when the clock shows the state before.
+  /// Replays a run that was paced by a clock. The stamp of a state tells after how many steps it was. A command acts in
+  /// steps that begin later than the command. With wall time, a step begins when its state is due. If the node was the
+  /// clock, a step begins when the clock shows the state before.
   void step_until(const std::vector<MessageInstance>& commands) {
     const std::vector<double> due = due_times();
     std::size_t next = 0;
@@ -167,7 +168,7 @@ class Replay {
     }
   }
 
-  /// When commands act, after the first state [s]; none overtakes another.
+  /// Times at which commands act, after the first state [s]; they keep their order.
   std::vector<double> due_times() const {
     std::vector<double> due;
     for (std::size_t i = 0; i < command_times_.size(); ++i) {
@@ -177,8 +178,8 @@ class Replay {
     return due;
   }
 
-  // ---- what
-  /// False if it is refused.
+  // ---- commands and states
+  /// Gives a command to the simulation. Returns false if it is refused.
   bool give(const MessageInstance& message) {
     const std::string topic = own(message.getTopic());
     std::vector<Command> commands;
@@ -194,7 +195,7 @@ class Replay {
     else
       fault = reader_.read_one(topic.substr(topic.rfind('/')) == "/command" ? Commanded::Effort : Commanded::SetPoint,
                                topics_.at(topic), read<std_msgs::Float64>(message)->data, commands);
-    if (fault.empty() && !commands.empty() && !thread_.command(commands)) fault = "more wait than steps can take";
+    if (fault.empty() && !commands.empty() && !thread_.command(commands)) fault = "too many commands are waiting";
     if (fault.empty()) {
       ++report_.commands;
       return true;
@@ -227,7 +228,8 @@ class Replay {
     return {};
   }
 
-  /// Of the state that the run was at: in lock step each has its own; where the node was the clock, as it made it.
+  /// The stamp of the run's present state. In lock step it is recorded; if the node was the clock, it is computed
+  /// likewise.
   ros::Time stamp() const {
     const auto steps = static_cast<double>(steps_);
     if (options_.lock_step) return states_[steps_]->header.stamp;
@@ -265,6 +267,7 @@ class Replay {
       note(state.position[i] - simulation.position(*joint), deviation.position, deviation.position_time);
       note(state.velocity[i] - simulation.velocity(*joint), deviation.velocity, deviation.velocity_time);
     }
+    if (options_.on_state) options_.on_state(simulation, {recorded_.begin() + static_cast<long>(row), recorded_.end()});
     ++report_.states;
   }
 
@@ -272,20 +275,20 @@ class Replay {
   Shifts shifts_;
   node::SteppingThread thread_;
   node::CommandReader reader_;
-  std::map<std::string, std::string> topics_;  // of single joints, and which it is
+  std::map<std::string, std::string> topics_;  // command topics of single joints, and their joints
   std::vector<boost::shared_ptr<sensor_msgs::JointState>> states_;
-  std::vector<ros::Time> arrivals_, command_times_;  // as the recorder got them
+  std::vector<ros::Time> arrivals_, command_times_;  // of states and commands, at the recorder
   std::vector<double> positions_, recorded_, times_;
   bool has_clock_ = false, was_paused_ = false;
   ros::Time begin_;
-  double period_ = 0;  // of steps, in the time of the stamps [s]
+  double period_ = 0;  // step size in the time of the stamps [s]
   std::size_t steps_ = 0;
   ReplayReport report_;
 };
 
-// ---------------------------------------------------------------- other times of commands
+// ---------------------------------------------------------------- commands at other times
 
-/// All early, all late, by turns, at random.
+/// Variants: all commands early, all late, alternating (two variants), random (four variants).
 std::vector<Shifts> other_shifts(const std::vector<int>& lateness, int timing) {
   constexpr unsigned kRandom = 4;
   std::vector<Shifts> all(4 + kRandom);
@@ -304,7 +307,7 @@ std::vector<Shifts> other_shifts(const std::vector<int>& lateness, int timing) {
   return all;
 }
 
-/// How far other replays are from the first, and how much farther the bag is.
+/// Computes how far the other replays deviate from the first one, and how much farther the recorded run deviates.
 void explain(const Replay& first, const std::vector<std::vector<double>>& others, ReplayReport& report) {
   const std::size_t count = report.joints.size();
   for (std::size_t i = 0; i < first.positions().size(); ++i) {
@@ -331,8 +334,10 @@ ReplayReport replay(Simulation simulation, const ReplayOptions& options) {
       return report;
     const std::vector<int> lateness = first.lateness();
     report.other_times = {0, options.timing + *std::max_element(lateness.begin(), lateness.end()), options.timing};
+    ReplayOptions unwatched = options;
+    unwatched.on_state = {};
     for (Shifts& shifts : other_shifts(lateness, options.timing)) {
-      Replay other(simulation.copy(), options, std::move(shifts));
+      Replay other(simulation.copy(), unwatched, std::move(shifts));
       other.run(bag);
       others.push_back(other.positions());
       ++report.other_times.replays;

@@ -1,5 +1,5 @@
 #pragma once
-/// Topics that also serve who comes late.
+/// Helpers to publish topics: late subscribers are served, and messages are made only for topics with subscribers.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -12,9 +12,10 @@
 
 namespace flexarm::node {
 
-/// Advertises a topic on which a new subscriber gets `make_message()` at once while the simulation is paused, or waits
-/// for a command, when nothing is sent that it could wait for. This is not latching: latched messages may reach a
-/// subscriber a second time if it connects just after they were sent, and no stamp is to be sent twice.
+/// Advertises a topic. While the simulation is paused, or waits for a command in lock step, a new subscriber gets
+/// `make_message()` at once, since no regular message may come for long. The topic is not latched, because a latched
+/// message may reach a subscriber twice if it connects just after the message was sent, and each stamp must be sent
+/// only once.
 template <typename Message, typename MakeMessage>
 ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue_size, const RunState& run,
                          MakeMessage make_message) {
@@ -24,7 +25,7 @@ ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::u
                                  });
 }
 
-/// Publishes what `make_message()` gives, which is made only where somebody listens.
+/// Makes a message with `make_message()` and publishes it, but only if the topic has subscribers.
 template <typename MakeMessage>
 void publish_to_listeners(const ros::Publisher& publisher, const MakeMessage& make_message) {
   if (publisher.getNumSubscribers() > 0) publisher.publish(make_message());

@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/driven_ends.h"
 
 namespace flexarm::node {
 namespace {
 
-constexpr std::size_t kMostNames = 12;  ///< of joints
+constexpr std::size_t kMostNames = 12;  ///< most joint names that are listed
 
-/// With commas between them; of many names the first ones.
+/// The first kMostNames names, separated by commas, and how many more there are.
 std::string list_of(const std::vector<std::string>& names) {
   if (names.empty()) return "none";
   std::string list;
@@ -35,6 +37,17 @@ void say_what_is_simulated(const Simulation& simulation, const RunState& run, co
                             << ", services in " << services
                             << (run.lock_step ? "; each step waits for its command" : "")
                             << (run.paused ? "; paused" : ""));
+}
+
+void advise_controllers(const Simulation& simulation) {
+  std::vector<std::string> limits;
+  for (const DrivenEnd& end : driven_ends(simulation))
+    limits.push_back(fmt::format("{} {:.3g}", end.coordinate, end.shakes_beyond));
+  if (limits.empty()) return;
+  ROS_INFO(
+      "controllers that act once a step shake joints at the ends of beams if they damp by more than, in N m s/rad: %s "
+      "(flexarm check says more)",
+      list_of(limits).c_str());
 }
 
 }  // namespace flexarm::node

@@ -1,5 +1,5 @@
 #pragma once
-/// What the node says when it begins with a scene.
+/// The log messages with which the node introduces a scene, at its start and after each new scene.
 
 #include <string>
 
@@ -8,9 +8,13 @@
 
 namespace flexarm::node {
 
-/// Logs two lines: the scene with its joints and unknowns; how it is stepped, and in which namespaces topics and
-/// services are. Before these what is doubtful about the model, as `flexarm check` does.
+/// Logs the warnings about the model that `flexarm check` gives, then two lines. The first names the scene, its joints
+/// and the number of unknowns. The second names scheme and step, and the namespaces of topics and services.
 void say_what_is_simulated(const Simulation& simulation, const RunState& run, const std::string& topics,
                            const std::string& services);
+
+/// Logs a line, if there is reason to, as the table of `flexarm check` of joints at the ends of beams: by how much
+/// controllers may damp them. For large models it takes some tenths of a second.
+void advise_controllers(const Simulation& simulation);
 
 }  // namespace flexarm::node

@@ -1,5 +1,5 @@
 #pragma once
-/// beam_states: poses, strains and stress resultants along every flexible link.
+/// Publishes the topic beam_states: poses, strains and stress resultants along each flexible link.
 
 #include <flexarm/BeamStateArray.h>
 #include <ros/node_handle.h>
@@ -14,7 +14,7 @@
 
 namespace flexarm::node {
 
-/// Computes and publishes only while somebody subscribes.
+/// Computes and publishes messages only while the topic has subscribers.
 class BeamStatePublisher {
  public:
   BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
@@ -22,7 +22,7 @@ class BeamStatePublisher {
   BeamStatePublisher(const BeamStatePublisher&) = delete;
   BeamStatePublisher& operator=(const BeamStatePublisher&) = delete;
 
-  /// Begins anew at a rate [Hz], with any stamp.
+  /// Sets the rate [Hz] and restarts the schedule: the next message may have any stamp, even an earlier one.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   void publish(const ros::Time& stamp, bool force);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Calls the thread that spins.
+/// Lets other threads request a callback in the thread that runs ros::spin(), without blocking.
 
 #include <ros/callback_queue.h>
 
@@ -11,10 +11,10 @@
 
 namespace flexarm::node {
 
-/// Whoever rings does not wait: a thread of the bell's own puts the callback into ROS's queue, which has locks.
+/// ring() never blocks. A thread of the bell puts the callback into ROS's callback queue, which uses locks.
 class Bell {
  public:
-  /// @param answer  is called by the thread that spins, once for all rings since the last call
+  /// @param answer  called in the thread that runs ros::spin(), once for all rings since the last call
   explicit Bell(std::function<void()> answer);
   ~Bell();
   Bell(const Bell&) = delete;

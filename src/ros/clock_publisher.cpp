@@ -10,7 +10,8 @@ namespace flexarm::node {
 namespace {
 
 constexpr std::chrono::seconds kPatience(3);
-/// Stamps of who follows another clock are ahead of it by nanoseconds only [s].
+/// If the node follows another clock, its stamps are ahead of that clock by nanoseconds at most. A larger lead means
+/// that the clock was set back [s].
 constexpr double kLargestLead = 1e-3;
 
 }  // namespace
@@ -78,7 +79,7 @@ std::optional<ros::Time> ClockPublisher::stamp() const {
 void ClockPublisher::warn_if_missing() {
   if (warned_ || stamp() || std::chrono::steady_clock::now() - start_ < kPatience) return;
   warned_ = true;
-  ROS_WARN("/use_sim_time is set, but nobody publishes /clock: nothing is published until somebody does");
+  ROS_WARN("/use_sim_time is set, but no node publishes /clock: nothing is published until one does");
 }
 
 }  // namespace flexarm::node

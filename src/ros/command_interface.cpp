@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexarm/simulation/command_refusal.h"
+
 namespace flexarm::node {
 namespace {
 
@@ -24,6 +26,7 @@ CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& priva
       controllers_(node, private_node, shown, stepping,
                    {times.time_of, [this] { return refusal(); }, times.stop_duration},
                    [this](const std::string& fault) { warn("joint_trajectory", fault); }),
+      limit_watch_(shown),
       last_warning_(std::chrono::steady_clock::now() - kWarningPeriod) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(
@@ -54,7 +57,8 @@ void CommandInterface::adopt_scene() {
 
 void CommandInterface::let_go_from(std::size_t coordinate) {
   for (std::size_t i = coordinate; i < shown_.coordinate_names().size(); ++i)
-    controllers_.release(i, "joint '" + shown_.coordinate_names()[i] + "' is gone, or has another place in the scene");
+    controllers_.release(i,
+                         "joint '" + shown_.coordinate_names()[i] + "' was removed, or has another place in the scene");
 }
 
 ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const std::string& suffix, Commanded quantity) {
@@ -74,11 +78,11 @@ ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const st
 
 void CommandInterface::forget_commands() {
   stepping_.forget_commands();
-  controllers_.release_all(stopped_ ? refusal() : "the simulation was put into another state");
+  controllers_.release_all(stopped_ ? refusal() : "the simulation was set to another state");
   if (stopped_)
     stop(stepping_.simulation());
   else
-    switch_servos(stepping_.simulation(), true);  // a state that was loaded may have been saved during a stop
+    switch_servos(stepping_.simulation(), true);  // a loaded state may have been saved during a stop
 }
 
 void CommandInterface::receive_force_command(const JointForceCommand& message) {
@@ -102,7 +106,7 @@ std::string CommandInterface::switch_mode(Simulation& simulation, const std::vec
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::optional<std::size_t> coordinate = simulation.find_coordinate(names[i]);
     const std::optional<ServoMode> mode = servo_mode_called(modes[i]);
-    std::string fault = !coordinate ? "there is no joint coordinate '" + names[i] + "'"
+    std::string fault = !coordinate ? unknown_coordinate(simulation, names[i])
                         : !mode     ? "mode must be 'effort', 'velocity' or 'position', got '" + modes[i] + "'"
                                     : std::string();
     try {
@@ -139,19 +143,25 @@ void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
   }
 }
 
+void CommandInterface::note_set_point(const Command& command) {
+  controllers_.release(command.coordinate, "another set point was commanded");
+  if (shown_.servo_mode(command.coordinate) == ServoMode::Position)
+    limit_watch_.look(command.coordinate, command.value);
+}
+
 template <class Read>
 void CommandInterface::command(const std::string& topic, const Read& read) {
   std::string fault = refusal();
   if (fault.empty()) fault = read();
   if (fault.empty())
     for (const Command& one : message_)
-      if (one.quantity == Commanded::SetPoint) controllers_.release(one.coordinate, "another set point was commanded");
-  if (fault.empty() && !stepping_.command(message_)) fault = "more wait already than steps can take";
+      if (one.quantity == Commanded::SetPoint) note_set_point(one);
+  if (fault.empty() && !stepping_.command(message_)) fault = "too many commands are waiting already";
   if (!fault.empty()) warn(topic, fault);
 }
 
 void CommandInterface::warn(const std::string& topic, const std::string& fault) {
-  // Not ROS_WARN_THROTTLE: it counts in ROS time, which stands still while a simulation that is the clock is paused.
+  // Not ROS_WARN_THROTTLE, which uses ROS time: it stands still if this node publishes /clock and is paused.
   const auto now = std::chrono::steady_clock::now();
   if (now - last_warning_ < kWarningPeriod) {
     ++unreported_;

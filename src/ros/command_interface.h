@@ -16,41 +16,46 @@
 
 #include "controllers.h"
 #include "flexarm/simulation/simulation.h"
+#include "limit_watch.h"
 #include "stepping/command_reader.h"
 #include "stepping/stepping_thread.h"
 
 namespace flexarm::node {
 
-/// What commands are told of time.
+/// How commands relate to time.
 struct CommandTimes {
-  std::function<double(const ros::Time&)> time_of;  ///< simulated, that no reset sets back, of a stamp [s]
-  double timeout = 0;        ///< a command expires after it, unless that names a duration [s]; 0: never
-  double stop_duration = 0;  ///< in which joints on trajectories decelerate that are to stop [s]; 0: at once
+  std::function<double(const ros::Time&)>
+      time_of;               ///< converts a stamp to simulated time, which no reset sets back [s]
+  double timeout = 0;        ///< a command without a duration expires after this time [s]; 0: never
+  double stop_duration = 0;  ///< joints that stop following a trajectory decelerate in this time [s]; 0: at once
 };
 
-/// Hands commands to the thread that steps: efforts of joint_force_command, joint_command and COORDINATE/command, set
-/// points of joint_set_points, joint_command and COORDINATE/set_point; trajectories and goals of controllers; and
-/// ~emergency_stop.
+/// Subscribes to all topics of commands, and hands commands to the stepping thread:
+/// - efforts: joint_force_command, joint_command, COORDINATE/command
+/// - set points: joint_set_points, joint_command, COORDINATE/set_point
+/// - trajectories and goals of controllers
+/// - ~emergency_stop
 class CommandInterface {
  public:
-  /// @param shown  what is stepped, as reports have it
+  /// @param shown  the node's copy of the simulation, as of the last report
   CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& shown,
                    SteppingThread& stepping, const CommandTimes& times);
   CommandInterface(const CommandInterface&) = delete;
   CommandInterface& operator=(const CommandInterface&) = delete;
 
-  /// Between two steps: the simulation is of another scene now, which may have other joints. Topics that both have
-  /// stay.
+  /// To be called between two steps, after the simulation has got another scene, which may have other joints. Topics of
+  /// joints that exist in both scenes stay.
   void adopt_scene();
-  /// Coordinates from this one on go with the next scene, or get other places: what they follow is over.
+  /// To be called before links come or go. Coordinates with this index or a higher one disappear or get another index:
+  /// they stop following trajectories and goals.
   void let_go_from(std::size_t coordinate);
-  /// Between two steps, after a reset, or where another state was loaded: no command expires; an emergency stop, or
-  /// none, still is in force.
+  /// To be called between two steps, after a reset or after another state was loaded. Drops all commands, with their
+  /// expiry times. The emergency stop stays as it is, on or off.
   void forget_commands();
-  /// Between two steps: switches the modes of servos, all or none. @returns why not, or nothing
+  /// Switches the modes of servos between two steps, of all given servos or of none. @returns an error, or ""
   std::string switch_mode(Simulation& simulation, const std::vector<std::string>& names,
                           const std::vector<std::string>& modes);
-  /// After a report, of the time `now`: simulated, not set back [s].
+  /// Checks all goals after a report. `now`: simulated time, which no reset sets back [s].
   void judge_goals(double now) { controllers_.judge(now); }
 
  private:
@@ -58,16 +63,18 @@ class CommandInterface {
   void receive_joint_command(const sensor_msgs::JointState& message);
   void receive_set_points(const sensor_msgs::JointState& message);
   void receive_emergency_stop(const std_msgs::Bool& message);
-  /// Why nothing may be commanded now, or nothing.
+  /// Why commands are refused at present, or "".
   std::string refusal() const;
-  /// COORDINATE/`suffix`, each message of which commands that quantity.
+  /// Subscribes to COORDINATE/`suffix`, whose messages command that quantity.
   ros::Subscriber subscribe_to(const std::string& coordinate, const std::string& suffix, Commanded quantity);
 
-  /// Hands over what `read` reads into `message_`, whole, or warns.
+  /// Does what an accepted set point asks for beside the command.
+  void note_set_point(const Command& command);
+  /// Lets `read` fill `message_`, and hands it over as a whole; if it is refused, logs a warning.
   template <class Read>
   void command(const std::string& topic, const Read& read);
   void warn(const std::string& topic, const std::string& fault);
-  /// While the emergency stop is on, no effort acts, be it commanded, the scene's own or a servo's.
+  /// Applies the emergency stop: no effort acts, neither commanded ones nor those of the scene or of servos.
   void stop(Simulation& simulation);
   void release(Simulation& simulation);
   void switch_servos(Simulation& simulation, bool on);
@@ -77,12 +84,13 @@ class CommandInterface {
   SteppingThread& stepping_;
   CommandReader reader_;
   Controllers controllers_;
-  std::vector<Command> message_;  ///< the one at hand
-  bool stopped_ = false;          ///< by ~emergency_stop
+  LimitWatch limit_watch_;
+  std::vector<Command> message_;  ///< commands of the message that is being read
+  bool stopped_ = false;          ///< whether ~emergency_stop is on
   std::chrono::steady_clock::time_point last_warning_;
   int unreported_ = 0;  ///< refused commands since the last warning
   std::vector<ros::Subscriber> subscribers_;
-  std::map<std::string, ros::Subscriber> joint_subscribers_;  ///< by topic
+  std::map<std::string, ros::Subscriber> joint_subscribers_;  ///< by the name of the topic
 };
 
 }  // namespace flexarm::node

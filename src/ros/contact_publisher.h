@@ -1,5 +1,5 @@
 #pragma once
-/// ~contacts: what touches what.
+/// Publishes the topics ~contacts and ~contacts_state: which links touch each other, where, and with what force.
 
 #include <flexarm/ContactArray.h>
 #include <ros/node_handle.h>
@@ -13,8 +13,8 @@
 
 namespace flexarm::node {
 
-/// Has topics where the scene has contacts; computes and publishes only while somebody subscribes. Where gazebo_msgs
-/// was there at build time, ~contacts_state has the same in the form that programs for Gazebo look for.
+/// Has topics only if the scene has contacts. Computes and publishes only while a topic has subscribers.
+/// ~contacts_state has the same content in the format of Gazebo; it exists if the node was built with gazebo_msgs.
 class ContactPublisher {
  public:
   ContactPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run, double rate,
@@ -22,9 +22,9 @@ class ContactPublisher {
   ContactPublisher(const ContactPublisher&) = delete;
   ContactPublisher& operator=(const ContactPublisher&) = delete;
 
-  /// The simulation is of another scene now.
+  /// To be called after the simulation has got another scene.
   void adopt_scene();
-  /// Begins anew at a rate [Hz], with any stamp.
+  /// Sets the rate [Hz] and restarts the schedule: the next message may have any stamp, even an earlier one.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   void publish(const ros::Time& stamp, bool force);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Messages of controllers: control_msgs' own where that package was found, else ours, which have the same fields and
-/// checksums.
+/// Message types of controllers: those of control_msgs if CMake found that package, else flexarm's own, which have the
+/// same fields and checksums.
 
 #ifdef FLEXARM_HAS_CONTROL_MSGS
 #include <control_msgs/FollowJointTrajectoryAction.h>

@@ -22,7 +22,7 @@ using Type = ControllerDescription::Type;
 
 constexpr const char* kOfAll = "follow_joint_trajectory";
 
-/// Reads the entries of the list one by one, and collects what is wrong with them.
+/// Reads the entries of the list one by one, and collects all errors.
 class ControllerReader {
  public:
   ControllerReader(std::string parameter, const Simulation& simulation)
@@ -60,9 +60,9 @@ class ControllerReader {
     out.action = out.name.empty() ? action : action.empty() ? out.name : out.name + "/" + action;
     std::string fault;
     if (out.action.empty() || !ros::names::validate(out.action, fault))
-      return complain("'" + out.action + "' is no name of an action: name/action_ns " + fault);
+      return complain("'" + out.action + "' is not a name of an action: name/action_ns " + fault);
     for (const ControllerDescription& other : controllers_)
-      if (other.action == out.action) return complain("there is another one with the action '" + out.action + "'");
+      if (other.action == out.action) return complain("another controller has the action '" + out.action + "'");
     if (type == "GripperCommand")
       read_gripper(entry, out);
     else if (type != "FollowJointTrajectory")
@@ -124,15 +124,15 @@ class ControllerReader {
     out.command_joint = out.joints.front();
     if (entry.hasMember("command_joint") && read_text(entry, "command_joint", out.command_joint) &&
         std::find(out.joints.begin(), out.joints.end(), out.command_joint) == out.joints.end())
-      complain("its 'command_joint' is none of its joints, got '" + out.command_joint + "'");
+      complain("its 'command_joint' is not one of its joints, got '" + out.command_joint + "'");
   }
 
-  /// Each joint exists, is moved by a servo, and belongs to one controller.
+  /// Checks that each joint exists, has a servo to drive it, and belongs to one controller only.
   void check_joints(const ControllerDescription& controller) {
     for (const std::string& name : controller.joints) {
       const std::optional<std::size_t> joint = simulation_.find_coordinate(name);
       if (!joint) {
-        complain("there is no joint coordinate '" + name + "'");
+        complain(unknown_coordinate(simulation_, name));
         continue;
       }
       const auto [owner, is_first] = owners_.emplace(name, controller.name);
@@ -151,14 +151,14 @@ class ControllerReader {
   std::string parameter_, place_, errors_;
   const Simulation& simulation_;
   std::vector<ControllerDescription> controllers_;
-  std::map<std::string, std::string> owners_;  ///< names of controllers, by joints
+  std::map<std::string, std::string> owners_;  ///< names of controllers, by joint name
 };
 
 }  // namespace
 
 DrivenBy driven_by(const Simulation& simulation, const std::string& joint) {
   const std::optional<std::size_t> coordinate = simulation.find_coordinate(joint);
-  if (!coordinate) throw std::invalid_argument("there is no joint coordinate '" + joint + "'");
+  if (!coordinate) throw std::invalid_argument(unknown_coordinate(simulation, joint));
   for (const scene::JointDescription& description : simulation.scene().joints) {
     if (description.name != joint || !description.mimic) continue;
     const scene::Mimic& mimic = *description.mimic;

@@ -58,7 +58,8 @@ void Controllers::receive(const trajectory_msgs::JointTrajectory& message) {
   std::vector<std::size_t> joints;
   const Motions::Fault fault = motions_.follow(message, {}, joints);
   if (!fault.is_none()) return warn_(fault.text);
-  if (!motions_.command_step()) warn_("it is followed, but more steps wait already than can be taken");
+  if (!motions_.command_step())
+    warn_("the trajectory is followed, but without a step of its own: too many steps are waiting already");
   take(controllers_.size(), joints);
 }
 

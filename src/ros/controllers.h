@@ -1,5 +1,5 @@
 #pragma once
-/// All controllers of the node, and trajectories from a topic.
+/// All controllers of the node, and the topic joint_trajectory.
 
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
@@ -16,29 +16,30 @@
 
 namespace flexarm::node {
 
-/// An action for each of ~controllers, and follow_joint_trajectory for all joints. What comes on joint_trajectory is
-/// for all joints, too. Where a goal takes a joint from another controller's, that one ends.
+/// Offers an action for each entry of ~controllers, and follow_joint_trajectory for all joints. Also subscribes to
+/// joint_trajectory, which takes any joints. If a new goal uses a joint of another controller's goal, the old goal
+/// ends.
 class Controllers {
  public:
-  /// @param warn  of what came by the topic and is refused
-  /// @throws ParameterError as read_controllers().
+  /// @param warn  called with the reason if a message on the topic is refused
+  /// @throws ParameterError as read_controllers() does.
   Controllers(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& shown, SteppingThread& stepping,
               Motions::Context context, std::function<void(const std::string&)> warn);
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
 
-  /// Judges all goals by what is shown, of the time `now` [s].
+  /// Checks all goals against the node's copy of the simulation, at the simulated time `now` [s].
   void judge(double now);
-  /// Somebody else commands the coordinate: what it follows is over, and so is the goal that it belongs to.
+  /// To be called if the coordinate gets a command from elsewhere: it stops following, and its goal is aborted.
   void release(std::size_t coordinate, const std::string& reason);
-  /// What is stepped is of another scene now.
+  /// To be called after the simulation has got another scene.
   void adopt_scene() { motions_.adopt_scene(); }
-  /// Nothing is followed any more.
+  /// Ends all trajectories, grips and goals.
   void release_all(const std::string& reason);
 
  private:
   void add(ros::NodeHandle& node, const ControllerDescription& description);
-  /// Joints now belong to `taker`, another controller or the topic.
+  /// Gives joints to `taker`, the index of a controller (controllers_.size(): the topic); ends the goals of others.
   void take(std::size_t taker, const std::vector<std::size_t>& joints);
   void receive(const trajectory_msgs::JointTrajectory& message);
 

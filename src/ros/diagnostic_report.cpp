@@ -19,7 +19,7 @@ void DiagnosticReport::write(DiagnosticStatus& status) {
     status.message = run_.failure;
   } else if (new_overruns > 0) {
     status.level = DiagnosticStatus::WARN;
-    status.message = fmt::format("slower than asked for: {} steps dropped", new_overruns);
+    status.message = fmt::format("slower than real_time_factor: {} steps dropped", new_overruns);
   } else {
     status.level = DiagnosticStatus::OK;
     status.message = run_.paused ? "paused" : "running";

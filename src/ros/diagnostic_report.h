@@ -1,5 +1,5 @@
 #pragma once
-/// What /diagnostics says of the simulation.
+/// The content of the node's message on /diagnostics.
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
@@ -13,12 +13,12 @@ namespace flexarm::node {
 
 struct RunState;
 
-/// Whether the simulation runs and keeps up, and how its steps go. Both must outlive the report.
+/// Reports whether the simulation runs and keeps pace, and how the solver does. Both arguments must outlive the report.
 class DiagnosticReport {
  public:
   DiagnosticReport(const Simulation& simulation, const RunState& run) : simulation_(simulation), run_(run) {}
 
-  /// Sets level and message, by what happened since the last call, and adds values.
+  /// Sets level and message by what happened since the last call, and appends values.
   void write(diagnostic_msgs::DiagnosticStatus& status);
 
  private:

@@ -19,7 +19,7 @@ Diagnostics::Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, con
 
 void Diagnostics::publish(bool force) {
   const ros::Time now = ros::Time::now();
-  const bool is_set_back = now < last_time_;  // else nothing would be sent until it is that late again
+  const bool is_set_back = now < last_time_;  // else nothing would be sent until ROS time reaches last_time_ again
   if (!force && !is_set_back && now < last_time_ + period_) return;
   last_time_ = now;
   diagnostic_msgs::DiagnosticArray message;

@@ -1,5 +1,5 @@
 #pragma once
-/// /diagnostics: whether the simulation runs, and keeps up.
+/// Publishes /diagnostics: whether the simulation runs and keeps pace.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -10,17 +10,17 @@ namespace flexarm::node {
 
 class Diagnostics {
  public:
-  /// @throws ParameterError if ~diagnostic_period [s] (1) is not above 0.
+  /// @throws ParameterError if ~diagnostic_period [s] (default 1) is not above 0.
   Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Simulation& simulation, const RunState& run);
 
-  /// Sends the diagnostics if the period is over; `force`: in any case.
+  /// Publishes if ~diagnostic_period has passed since the last message, or if `force` is true.
   void publish(bool force);
 
  private:
   DiagnosticReport report_;
   ros::Publisher publisher_;
   ros::Duration period_;
-  ros::Time last_time_;  ///< when they were sent last
+  ros::Time last_time_;  ///< when the last message was sent
 };
 
 }  // namespace flexarm::node

@@ -1,5 +1,5 @@
 #pragma once
-/// How long something took, many times.
+/// A histogram of durations, for quantiles.
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace flexarm::node {
 
-/// Counts durations in classes whose bounds grow by 2^(1/8), 9 %, from 0.1 us to 7 min.
+/// Counts durations in classes from 0.1 us to 7 min. The upper bound of a class is 2^(1/8) (9 %) above its lower bound.
 class DurationHistogram {
  public:
   void add(double seconds) {
@@ -21,7 +21,8 @@ class DurationHistogram {
 
   std::uint64_t count() const { return total_; }
   double largest() const { return largest_; }  ///< [s]
-  /// What so large a part of the durations does not exceed: the upper bound of a class [s]; 0: there are none.
+  /// The duration that a fraction `part` (0 to 1) of all durations does not exceed, rounded up to the bound of a class
+  /// [s]. 0 if there are no durations.
   double quantile(double part) const {
     const double wanted = part * static_cast<double>(total_);
     std::uint64_t sum = 0;

@@ -1,4 +1,4 @@
-/// The ROS node: a simulated arm that looks like a real one on the graph.
+/// The ROS node: simulates an arm, with the topics, services and actions that a real arm would have.
 
 #include <ros/console.h>
 #include <ros/init.h>
@@ -10,11 +10,11 @@
 #include "node.h"
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // who reads a pipe is told at once, too
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // so that lines reach a pipe at once, too
   ros::init(argc, argv, "flexarm");
-  // As ROS does with SIGINT: otherwise the node would stay registered with the master for ever.
+  // ROS does the same for SIGINT. Without this, SIGTERM would leave the node registered with the master for ever.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
-  ros::NodeHandle keeps_ros_alive;  // beyond a failed construction: its message is to go out
+  ros::NodeHandle keeps_ros_alive;  // so that the error of a failed construction still reaches /rosout
   try {
     flexarm::node::Node node;
     ros::spin();

@@ -18,7 +18,7 @@ void FrameWatch::receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& eve
   if (known_publishers_.count(publisher) > 0) return;
   for (const geometry_msgs::TransformStamped& transform : event.getConstMessage()->transforms) {
     std::string frame = transform.child_frame_id;
-    if (!frame.empty() && frame.front() == '/') frame.erase(0, 1);  // as in the days of tf
+    if (!frame.empty() && frame.front() == '/') frame.erase(0, 1);  // tf names, before tf2, had a leading slash
     if (frames_.count(frame) == 0) continue;
     known_publishers_.insert(publisher);
     ROS_WARN_STREAM(publisher << " publishes the transform of '" << frame << "', which this node publishes from the "

@@ -1,5 +1,5 @@
 #pragma once
-/// Somebody else who publishes this arm's frames.
+/// Warns if another node publishes frames of this arm.
 
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
@@ -12,12 +12,12 @@
 
 namespace flexarm::node {
 
-/// Listens to /tf and /tf_static, and warns once of every other node that publishes one of these frames: as
-/// robot_state_publisher does, or a second arm without a frame prefix.
+/// Listens to /tf and /tf_static. Warns once of each other node that publishes one of the given frames, such as a
+/// robot_state_publisher or a second arm without a frame prefix.
 class FrameWatch {
  public:
   FrameWatch(ros::NodeHandle& node, std::unordered_set<std::string> frames);
-  /// Others are this arm's now.
+  /// Replaces the set of frames.
   void watch(std::unordered_set<std::string> frames) { frames_ = std::move(frames); }
   FrameWatch(const FrameWatch&) = delete;
   FrameWatch& operator=(const FrameWatch&) = delete;

@@ -1,5 +1,5 @@
 #pragma once
-/// An action: one goal at a time, and what its client is told.
+/// An actionlib server that has one goal at a time.
 
 #include <ros/node_handle.h>
 
@@ -15,24 +15,24 @@ namespace flexarm::node {
 /// How a goal ends.
 enum class GoalEnd { Succeeded, Aborted, Canceled };
 
-/// Of control::FollowJointTrajectoryAction and control::GripperCommandAction.
+/// Instantiated for control::FollowJointTrajectoryAction and control::GripperCommandAction.
 template <class Action>
 class GoalServer {
  public:
   using Goal = typename Action::_action_goal_type::_goal_type;
   using Result = typename Action::_action_result_type::_result_type;
   using Feedback = typename Action::_action_feedback_type::_feedback_type;
-  /// Why a goal is not taken.
+  /// Why a goal is rejected.
   struct Rejection {
     Result result;
     std::string text;
   };
   struct Callbacks {
-    /// A goal is to be followed from now on, in place of the one under way.
+    /// Starts to follow a new goal, which replaces the current one; or returns why it is rejected.
     std::function<std::optional<Rejection>(const Goal&)> follow;
-    /// The goal under way is over: it is to end so, for that reason.
+    /// Ends the current goal in the given way and for the given reason.
     std::function<void(GoalEnd, const std::string&)> end;
-    /// The client wants the goal under way to end: joints are to stop.
+    /// Stops the joints, because the client cancels the current goal.
     std::function<void()> stop;
   };
 
@@ -43,11 +43,11 @@ class GoalServer {
 
   bool is_underway() const;
   void publish_feedback(const Feedback& feedback);
-  /// Ends the goal that is under way, if there is one.
+  /// Ends the current goal, if there is one.
   void end(GoalEnd how, const Result& result, const std::string& text);
 
  private:
-  struct Server;  // of actionlib, which takes long to compile
+  struct Server;  // wraps actionlib's server, so that its slow headers are included in one file only
   std::unique_ptr<Server> server_;
 };
 

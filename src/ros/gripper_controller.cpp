@@ -48,7 +48,7 @@ std::optional<GripperController::Server::Rejection> GripperController::follow_go
   std::vector<Motions::Target> targets;
   try {
     if (fault.empty()) targets = targets_of(position);
-  } catch (const std::invalid_argument& error) {  // of a scene that was read later
+  } catch (const std::invalid_argument& error) {  // the scene was replaced, and a joint may be gone
     fault = error.what();
   }
   if (fault.empty()) fault = motions_.grip(targets, max_effort > 0 ? max_effort : description_.max_effort);

@@ -1,5 +1,5 @@
 #pragma once
-/// A gripper with an action, as gripper_action_controller has it.
+/// A gripper with an action like that of gripper_action_controller.
 
 #include <optional>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace flexarm::node {
 
-/// Lets one or two joints go to a position with a limited effort. Where they do not move any more before they are
-/// there, the goal is aborted as stalled; they go on pressing.
+/// Moves one or two joints to a position with a limited effort. If the joints stop before they reach it, the goal is
+/// aborted as stalled, and the gripper goes on pressing.
 class GripperController : public JointController {
  public:
   GripperController(ros::NodeHandle& node, const ControllerDescription& description, Motions& motions, Take take);
@@ -25,21 +25,21 @@ class GripperController : public JointController {
   using Result = control::GripperCommandResult;
 
   std::optional<Server::Rejection> follow_goal(const control::GripperCommandGoal& message);
-  /// Where the joints that are driven are to be for that position of the gripper.
+  /// Target positions of the driven joints for a given position of the gripper.
   /// @throws std::invalid_argument if there is no such joint.
   std::vector<Motions::Target> targets_of(double position) const;
-  /// Joints stay where they are.
+  /// Makes the joints stay where they are.
   void hold();
-  /// Of the gripper as it is.
+  /// Position and effort of the gripper at present.
   Result result() const;
   bool is_at_goal() const;
   bool is_moving() const;
 
   ControllerDescription description_;
-  std::vector<Motions::Target> targets_;  ///< of the goal under way
-  double last_motion_ = 0;                ///< when joints have moved, or the goal began [s]
-  bool begins_ = false;                   ///< nothing was judged yet
-  double next_feedback_ = 0;              ///< [s]
+  std::vector<Motions::Target> targets_;  ///< of the current goal
+  double last_motion_ = 0;                ///< when a joint moved last, or when the goal began [s]
+  bool begins_ = false;                   ///< true until the first judge() of the current goal
+  double next_feedback_ = 0;              ///< simulated time of the next feedback [s]
   Server action_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What all controllers have: an action for a group of joints, with one goal at a time.
+/// The base class of controllers: an action for a group of joints, with one goal at a time.
 
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace flexarm::node {
 
 class JointController {
  public:
-  /// Takes joints from the goals of other controllers, which end.
+  /// Takes joints from other controllers, whose goals end.
   using Take = std::function<void(const std::vector<std::size_t>&)>;
 
   JointController(Motions& motions, Take take) : motions_(motions), take_(std::move(take)) {}
@@ -23,16 +23,16 @@ class JointController {
   JointController(const JointController&) = delete;
   JointController& operator=(const JointController&) = delete;
 
-  /// Judges the goal under way by what is shown, of the time `now` [s].
+  /// Checks the current goal against the node's copy of the simulation, at the simulated time `now` [s].
   virtual void judge(double now) = 0;
-  /// Ends the goal under way, if there is one; what joints do is left to others.
+  /// Ends the current goal, if there is one; the joints keep moving as they do.
   virtual void end(GoalEnd how, const std::string& reason) = 0;
   virtual bool is_underway() const = 0;
-  /// Whether the goal under way is one of that joint.
+  /// Whether the current goal uses that joint.
   bool has_goal_for(std::size_t joint) const {
     return is_underway() && std::find(joints_.begin(), joints_.end(), joint) != joints_.end();
   }
-  /// Ends that goal where somebody else commands one of its joints: the others stop.
+  /// Aborts the current goal, because one of its joints got a command from elsewhere; the goal's other joints stop.
   void abort(const std::string& reason) {
     motions_.stop(joints_);
     end(GoalEnd::Aborted, reason);
@@ -41,7 +41,7 @@ class JointController {
  protected:
   Motions& motions_;
   Take take_;
-  std::vector<std::size_t> joints_;  ///< of the goal under way
+  std::vector<std::size_t> joints_;  ///< of the current goal
 };
 
 }  // namespace flexarm::node

@@ -1,5 +1,5 @@
 #pragma once
-/// beam_markers: deformed beams, arrows, trails and text for rviz.
+/// Publishes the topic beam_markers: deformed beams, arrows, trails and text for rviz.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -15,7 +15,7 @@
 
 namespace flexarm::node {
 
-/// Computes and publishes only while somebody subscribes.
+/// Computes and publishes messages only while the topic has subscribers.
 class MarkerPublisher {
  public:
   MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
@@ -23,12 +23,12 @@ class MarkerPublisher {
   MarkerPublisher(const MarkerPublisher&) = delete;
   MarkerPublisher& operator=(const MarkerPublisher&) = delete;
 
-  /// The simulation is of another scene now: what is drawn of the one before is taken away.
+  /// To be called after the simulation has got another scene: the markers of the old scene are deleted.
   void adopt_scene();
-  /// Begins anew at a rate [Hz], with any stamp.
+  /// Sets the rate [Hz] and restarts the schedule: the next message may have any stamp, even an earlier one.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   void publish(const ros::Time& stamp, bool force);
-  /// After a reset: scales and trails begin anew.
+  /// To be called after a reset: scales are chosen again, and trails start empty.
   void begin_anew() { messages_->begin_anew(); }
 
  private:

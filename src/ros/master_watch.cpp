@@ -27,7 +27,7 @@ XmlRpcValue arguments(const std::vector<std::string>& texts) {
   return out;
 }
 
-/// False if the master does not answer, or says no.
+/// Calls a method of the master. @returns false if the master does not answer, or answers with an error
 bool ask(const std::string& method, const std::vector<std::string>& texts, XmlRpcValue& payload) {
   XmlRpcValue response;
   return ros::master::execute(method, arguments(texts), response, payload, /*wait_for_master=*/false);
@@ -37,7 +37,7 @@ const std::string& own_uri() {
   return ros::XMLRPCManager::instance()->getServerURI();
 }
 
-/// As the master tells who registers later.
+/// Tells this node of the publishers of a topic, in the way in which the master tells subscribers of new publishers.
 void tell_of_publishers(const std::string& topic, const XmlRpcValue& publishers) {
   std::string host;
   std::uint32_t port = 0;
@@ -74,7 +74,7 @@ void MasterWatch::look() {
   if (!ros::master::check()) {
     if (!std::exchange(is_gone_, true))
       ROS_WARN_STREAM("the ROS master at " << ros::master::getURI()
-                                           << " does not answer: the simulation goes on, for who is connected");
+                                           << " does not answer: the simulation goes on for all connected nodes");
     return;
   }
   is_gone_ = false;
@@ -82,7 +82,7 @@ void MasterWatch::look() {
   if (ask("lookupNode", {ros::this_node::getName()}, payload) || ros::isShuttingDown()) return;
   register_anew();
   has_come_back_.store(true);
-  ROS_WARN_STREAM("the ROS master at " << ros::master::getURI() << " did not know this node: registered anew");
+  ROS_WARN_STREAM("the ROS master at " << ros::master::getURI() << " did not know this node: registered again");
 }
 
 void MasterWatch::register_anew() const {

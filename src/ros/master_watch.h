@@ -1,5 +1,5 @@
 #pragma once
-/// A ROS master that goes away and comes back.
+/// Registers the node again when the ROS master was restarted.
 
 #include <atomic>
 #include <chrono>
@@ -11,17 +11,18 @@
 
 namespace flexarm::node {
 
-/// Connections outlive the master, but one that comes back knows nobody. This looks after it now and then, in a thread
-/// of its own, since an answer may take long, and registers the node's topics and services with it anew.
+/// Connections between nodes outlive the master, but a restarted master does not know any node. This class asks the
+/// master every second whether it knows this node; if not, it registers the node's topics and services again. It does
+/// so in a thread of its own, since an answer may take long.
 class MasterWatch {
  public:
-  /// @param services  names of all that the node serves
+  /// @param services  names of all services of the node
   explicit MasterWatch(std::vector<std::string> services);
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
 
-  /// Whether it has come back since the last call: parameters that were set are gone.
+  /// Whether the master was restarted since the last call, so that the parameters that the node had set are lost.
   bool has_come_back() { return has_come_back_.exchange(false); }
 
  private:

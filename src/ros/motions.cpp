@@ -16,7 +16,11 @@ using Result = control::FollowJointTrajectoryResult;
 }  // namespace
 
 Motions::Motions(const Simulation& shown, SteppingThread& stepping, Context context)
-    : shown_(shown), stepping_(stepping), context_(std::move(context)), followed_(shown.coordinate_names().size()) {}
+    : shown_(shown),
+      stepping_(stepping),
+      context_(std::move(context)),
+      followed_(shown.coordinate_names().size()),
+      limit_watch_(shown) {}
 
 template <class Change>
 void Motions::change(const Change& change) {
@@ -46,7 +50,7 @@ Motions::Fault Motions::follow(const trajectory_msgs::JointTrajectory& message, 
   for (const std::string& name : message.joint_names)
     if (!is_of_group(name))
       return {Result::INVALID_JOINTS,
-              fmt::format("'{}' is no joint of this controller, which has {}", name, fmt::join(group, ", "))};
+              fmt::format("'{}' is not a joint of this controller, which has {}", name, fmt::join(group, ", "))};
   if (!message.points.empty()) return follow_points(message, joints);
   for (std::size_t joint = 0; joint < followed_.joint_count(); ++joint)
     if (followed_.follows(joint) && is_of_group(shown_.coordinate_names()[joint])) joints.push_back(joint);
@@ -66,7 +70,7 @@ Motions::Fault Motions::follow_points(const trajectory_msgs::JointTrajectory& me
     trajectory.start = message.header.stamp.isZero() ? now : context_.time_of(message.header.stamp);
     if (TrajectoryFollower::is_over(trajectory, now)) {
       const double since = now - trajectory.start - trajectory.points.back().time;
-      fault = {Result::OLD_HEADER_TIMESTAMP, fmt::format("its last point is past by {:.3g} s", since)};
+      fault = {Result::OLD_HEADER_TIMESTAMP, fmt::format("its last point was {:.3g} s ago", since)};
       return;
     }
     std::vector<double> set_points;
@@ -76,6 +80,7 @@ Motions::Fault Motions::follow_points(const trajectory_msgs::JointTrajectory& me
     }
     stepping_.trajectories().follow(trajectory, now, set_points);
   });
+  if (fault.is_none()) limit_watch_.look(trajectory);
   return fault;
 }
 
@@ -92,6 +97,7 @@ std::string Motions::grip(const std::vector<Target>& targets, double max_effort)
       stepping_.grips().close(target.joint, target.position, max_effort);
     }
   });
+  for (const Target& target : targets) limit_watch_.look(target.joint, target.position);
   return {};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What controllers let joints do.
+/// Starts and stops trajectories and grips of joints, for the controllers.
 
 #include <ros/time.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -10,20 +10,22 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "limit_watch.h"
 #include "stepping/grips.h"
 #include "stepping/stepping_thread.h"
 #include "stepping/trajectory_follower.h"
 
 namespace flexarm::node {
 
-/// Hands trajectories and grips to the thread that steps, and knows what joints are to do at a time. Times are
-/// simulated ones that no reset sets back [s].
+/// Hands trajectories and grips to the stepping thread, and tells where joints should be at a given time. All times are
+/// simulated and are not set back by resets [s].
 class Motions {
  public:
   struct Context {
-    std::function<double(const ros::Time&)> time_of;  ///< of a stamp, between two steps [s]
-    std::function<std::string()> refusal;             ///< see refusal()
-    double stop_duration = 0;                         ///< in which joints decelerate that are to stop [s]; 0: at once
+    std::function<double(const ros::Time&)>
+        time_of;                           ///< converts a stamp to simulated time; call between two steps [s]
+    std::function<std::string()> refusal;  ///< why commands are refused at present, or ""
+    double stop_duration = 0;              ///< in which joints decelerate that are stopped [s]; 0: at once
   };
   /// Why a message is refused, with an error code of control::FollowJointTrajectoryResult.
   struct Fault {
@@ -36,50 +38,53 @@ class Motions {
     double position;  ///< [m or rad]
   };
 
-  /// @param shown  what is stepped, as reports have it
+  /// @param shown  the node's copy of the simulation, as of the last report
   Motions(const Simulation& shown, SteppingThread& stepping, Context context);
   Motions(const Motions&) = delete;
   Motions& operator=(const Motions&) = delete;
 
   const Simulation& shown() const { return shown_; }
-  /// Why nothing may be commanded now, or nothing.
+  /// Why commands are refused at present, or "".
   std::string refusal() const { return context_.refusal(); }
   std::vector<std::string> names_of(const std::vector<std::size_t>& joints) const;
-  /// Where the joint is to be, if it follows a trajectory or has followed one; when that ends.
+  /// Where the joint should be, if it follows a trajectory or has followed one; and when that trajectory ends.
   JointPoint at(std::size_t joint, double time) const { return followed_.at(joint, time); }
   double end(std::size_t joint) const { return followed_.end(joint); }
   void release_arrived(double now) { followed_.release_arrived(now); }
 
-  /// Lets `joints`, which the message names, follow it from its stamp on; without points, those of the group stop that
-  /// are on trajectories. Or says why not.
-  /// @param group  of which the message names joints; empty: all
+  /// Makes the joints that the message names follow it, from its stamp on. A message without points stops all joints of
+  /// the group that follow trajectories.
+  /// @param group   names of the joints that the message may name; empty: all
+  /// @param joints  gets the joints that follow or stop
+  /// @returns why the message is refused, if it is
   Fault follow(const trajectory_msgs::JointTrajectory& message, const std::vector<std::string>& group,
                std::vector<std::size_t>& joints);
-  /// Lets joints go to positions with at most that effort [N or N m]; 0: with what their servos give.
-  /// @returns why not, or nothing
+  /// Moves joints to positions, with at most the given effort [N or N m]; 0: only the servos' own limits.
+  /// @returns an error, or ""
   std::string grip(const std::vector<Target>& targets, double max_effort);
-  /// Lets those of the joints stop that are on trajectories.
+  /// Stops those of the joints that follow trajectories.
   void stop(const std::vector<std::size_t>& joints);
-  /// In lock step, makes one step. @returns false if too many wait already
+  /// In lock step, makes one step. @returns false if too many steps wait already
   bool command_step() { return stepping_.command_step(); }
-  /// Leaves a joint to others. @returns false if it was left to them anyway
+  /// Ends the trajectory or grip of a joint. @returns false if it has none
   bool release(std::size_t joint);
   void release_all();
-  /// What is stepped is of another scene now.
+  /// To be called after the simulation has got another scene.
   void adopt_scene();
 
  private:
   Fault follow_points(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t>& joints);
-  /// Changes what is followed, between two steps.
+  /// Changes trajectories or grips between two steps.
   template <class Change>
   void change(const Change& change);
 
   const Simulation& shown_;
   SteppingThread& stepping_;
   Context context_;
-  // Copies of what the thread has, to be looked at while steps go on:
+  // Copies of the stepping thread's trajectories and grips, which can be read while steps go on:
   TrajectoryFollower followed_;
   Grips grips_;
+  LimitWatch limit_watch_;
 };
 
 }  // namespace flexarm::node

@@ -12,15 +12,16 @@
 
 #include "announcement.h"
 #include "flexarm/simulation/checkpoint.h"
-#include "messages/scene_extent.h"
+#include "pictures/scene_extent.h"
 
 namespace flexarm::node {
 namespace {
 
 const ros::WallDuration kTickPeriod(0.1);
-/// Who clears his frames as the clock jumps back must not get any of before after that.
+/// Wait before /clock is set back. Subscribers that clear their transforms when the clock jumps back must not get older
+/// messages after that.
 const ros::WallDuration kWayOfMessages(0.1);
-constexpr double kWarningPeriod = 10;  ///< of what goes on and on, wall time [s]
+constexpr double kWarningPeriod = 10;  ///< of warnings that repeat, wall time [s]
 
 SimulationOptions simulation_options(const Parameters& parameters) {
   SimulationOptions options;
@@ -37,7 +38,7 @@ bool begins_with(const std::vector<std::string>& names, const std::vector<std::s
   return names.size() >= first.size() && std::equal(first.begin(), first.end(), names.begin());
 }
 
-/// Whether the one's coordinates and links are the first of the other's.
+/// Whether the coordinates and links of one simulation are the first ones of the other's, so that indices stay valid.
 bool keeps_places(const Simulation& before, const Simulation& after) {
   const auto keeps = [](const std::vector<std::string>& old, const std::vector<std::string>& now) {
     return begins_with(now, old) || begins_with(old, now);
@@ -45,7 +46,7 @@ bool keeps_places(const Simulation& before, const Simulation& after) {
   return keeps(before.coordinate_names(), after.coordinate_names()) && keeps(before.link_names(), after.link_names());
 }
 
-/// Of steps by the wall clock [s]; 0: there is none.
+/// Wall time from one step to the next [s]; 0: steps do not follow the wall clock.
 double period(double step, const Parameters& parameters) {
   return parameters.real_time_factor > 0 ? step / parameters.real_time_factor : 0;
 }
@@ -76,11 +77,14 @@ Node::Node()
       master_watch_(service_names()) {
   run_.paused = parameters_.paused;
   run_.lock_step = parameters_.lock_step;
+  warn_of_unknown_parameters(private_node_);
   announce();
+  advise_controllers(shown_);
   if (parameters_.error_window > 0 && !stepping_.estimates_errors())
     ROS_WARN(
-        "~error_window: servos are not sampled every second step, so that steps of twice the length could be taken: "
-        "no error is estimated");
+        "~error_window: no error is estimated, since steps of twice the length do not meet the sample times of "
+        "servos");
+  web_publisher_ = serve_page(shown_, parameters_, private_node_.getNamespace());
   if (parameters_.realtime) be_real_time();
   if (parameters_.interactive) be_interactive();
   describe_view();
@@ -112,7 +116,7 @@ std::vector<std::string> Node::service_names() const {
 
 void Node::be_interactive() {
   const double mass = shown_.mass();
-  // Of the whole mass on this spring: half a hertz, and half of the critical damping.
+  // Default: the whole mass on this spring has 0.5 Hz and half of the critical damping.
   const auto given_or = [](double given, double fallback) { return given > 0 ? given : fallback; };
   const PullHandles::Spring spring{given_or(parameters_.pull_stiffness, M_PI * M_PI * mass),
                                    given_or(parameters_.pull_damping, M_PI * mass)};
@@ -128,6 +132,7 @@ void Node::be_interactive() {
 
 void Node::tick() {
   take_reports();
+  if (web_publisher_) web_publisher_->tick();
   if (pull_handles_) pull_handles_->let_go_of_lost();
   if (!run_.paused) slowness_.warn_if_slow(shown_.step_size());
   diagnostics_.publish(false);
@@ -141,7 +146,7 @@ void Node::take_reports() {
     take(reports.front());
     reports.pop();
   }
-  if (!reports.empty()) bell_.ring();  // others have their turn in between
+  if (!reports.empty()) bell_.ring();  // other callbacks come first
 }
 
 void Node::take(const StepReport& report) {
@@ -166,12 +171,12 @@ void Node::take(const StepReport& report) {
 
 void Node::warn_of_recoveries(const StepReport& report) {
   if (report.result.is_dissipated)
-    ROS_WARN_THROTTLE(kWarningPeriod,
-                      "the step to t = %g s was done by edmc2, as on_failure allows: %s could not do it", shown_.time(),
-                      shown_.scheme().c_str());
+    ROS_WARN_THROTTLE(kWarningPeriod, "the step to t = %g s was made by edmc2, as on_failure allows: scheme %s failed",
+                      shown_.time(), shown_.scheme().c_str());
   if (report.result.converged) return;
   ++run_.cut;
-  ROS_WARN_THROTTLE(kWarningPeriod, "only a part of the step to t = %g s was done in time, simulated time lags: %s",
+  ROS_WARN_THROTTLE(kWarningPeriod,
+                    "only a part of the step to t = %g s was made in time, and simulated time lags behind: %s",
                     shown_.time(), shown_.explain(report.result).c_str());
 }
 
@@ -187,12 +192,12 @@ void Node::fail(const StepResult& result) {
   run_.failure = "step from t = " + std::to_string(shown_.time()) + " s failed: " + shown_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
-  publish_news();  // the last good sub-step may be
+  publish_news();  // the failed step may have made good sub-steps, whose state is new
   diagnostics_.publish(true);
 }
 
 void Node::describe_view() const {
-  const messages::SceneExtent extent = messages::scene_extent(shown_);
+  const pictures::SceneExtent extent = pictures::scene_extent(shown_);
   private_node_.setParam("view/frame", parameters_.frame_prefix + shown_.scene().root_link);
   private_node_.setParam("view/center", std::vector<double>{extent.center.x(), extent.center.y(), extent.center.z()});
   private_node_.setParam("view/radius", extent.radius);
@@ -202,23 +207,24 @@ void Node::publish(bool force) {
   if (force) clock_publisher_.publish_now();
   const std::optional<ros::Time> stamp = clock_publisher_.stamp();
   if (!stamp) return;
-  state_publisher_.publish(*stamp, force || run_.lock_step);  // who commands the next step waits for it
+  state_publisher_.publish(*stamp, force || run_.lock_step);  // in lock step the commander waits for each state
   beam_state_publisher_.publish(*stamp, force);
   contact_publisher_.publish(*stamp, force);
   marker_publisher_.publish(*stamp, force);
   if (pull_handles_ && handle_schedule_.due(*stamp, force)) pull_handles_->follow();
   sensor_publisher_.publish(*stamp);
   status_publisher_.publish(*stamp, force);
+  if (web_publisher_) web_publisher_->publish();
 }
 
 void Node::advance_clock(std::uint64_t steps, std::uint64_t overruns, std::optional<ClockPublisher::WallTime> due) {
   if (clock_publisher_.advance(steps, overruns, due)) return;
-  ROS_WARN("ROS time was set back, to %.9g s: stamps begin there again", clock_publisher_.stamp()->toSec());
+  ROS_WARN("ROS time was set back, to %.9g s: stamps continue from there", clock_publisher_.stamp()->toSec());
   set_rates();
 }
 
 void Node::publish_news() {
-  advance_clock(1, run_.overruns, std::nullopt);  // news need a stamp of their own
+  advance_clock(1, run_.overruns, std::nullopt);  // news need a new stamp
   publish(true);
 }
 
@@ -248,7 +254,7 @@ void Node::pause() {
 
 bool Node::resume() {
   if (!run_.paused) return true;
-  // Who resumes after a failure is told whether the step works now.
+  // After a failure, the caller must learn whether the step succeeds this time.
   if (run_.failed() && !advance()) return false;
   run_.paused = false;
   run_.step_times.clear();
@@ -283,7 +289,7 @@ void Node::reset() {
 
 std::string Node::reset_with_clock() {
   if (!clock_publisher_.is_clock())
-    return "this node does not publish /clock (~publish_clock), so that it cannot set ROS time back";
+    return "this node cannot set ROS time back, since it does not publish /clock (~publish_clock)";
   stepping_.between_steps([this](Simulation& simulation) {
     take_reports();
     simulation.reset();
@@ -302,6 +308,7 @@ void Node::adopt_scene() {
   state_publisher_.adopt_scene();
   contact_publisher_.adopt_scene();
   marker_publisher_.adopt_scene();
+  if (web_publisher_) web_publisher_->adopt_scene();
   sensor_publisher_.adopt_scene();
   command_interface_.adopt_scene();
   frame_watch_.watch(state_publisher_.frames());
@@ -310,7 +317,8 @@ void Node::adopt_scene() {
 }
 
 void Node::reload() {
-  Simulation other(read_scene(node_, private_node_), simulation_options(parameters_));  // while this one steps
+  Simulation other(read_scene(node_, private_node_),
+                   simulation_options(parameters_));  // the old simulation goes on stepping meanwhile
   stepping_.between_steps([&](Simulation&) {
     take_reports();
     stepping_.begin_with(std::move(other));
@@ -318,6 +326,7 @@ void Node::reload() {
     announce();
     begin_anew();
   });
+  advise_controllers(shown_);
   reconfiguration_.describe();
 }
 
@@ -338,13 +347,16 @@ void Node::edit(const std::function<void(Simulation&)>& edit) {
 
 void Node::change(std::optional<scene::SceneDescription> scene, const Parameters& parameters) {
   std::optional<Simulation> changed;
-  if (scene) changed.emplace(*std::move(scene), simulation_options(parameters));  // while the other one steps
+  if (scene)
+    changed.emplace(*std::move(scene),
+                    simulation_options(parameters));  // the old simulation goes on stepping meanwhile
   stepping_.between_steps([&](Simulation& running) {
     take_reports();
     if (changed) {
       changed->take_over(running);
       stepping_.go_on_with(*std::move(changed));
       shown_ = running.copy();
+      if (web_publisher_) web_publisher_->adopt_scene();
     }
     parameters_ = parameters;
     set_pace();
@@ -357,7 +369,7 @@ void Node::load_state(const std::string& file) {
   stepping_.between_steps([&](Simulation& simulation) {
     take_reports();
     read_checkpoint(simulation, file);
-    ROS_INFO("at t = %g s, from '%s'", simulation.time(), file.c_str());
+    ROS_INFO("loaded the state at t = %g s from '%s'", simulation.time(), file.c_str());
     begin_anew();
   });
 }
@@ -384,6 +396,7 @@ void Node::begin_anew() {
   command_interface_.forget_commands();
   clear_wrenches();
   marker_publisher_.begin_anew();
+  if (web_publisher_) web_publisher_->begin_anew();
   show_new_state();
 }
 

@@ -1,11 +1,12 @@
 #pragma once
-/// A thread steps the simulation, this one lets everybody know.
+/// The class of the ROS node: a thread steps the simulation, and the thread that runs ros::spin() does all the rest.
 
 #include <ros/node_handle.h>
 #include <ros/steady_timer.h>
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,59 +33,61 @@
 #include "state_publisher.h"
 #include "status_publisher.h"
 #include "stepping/stepping_thread.h"
+#include "web_publisher.h"
 
 namespace flexarm::node {
 
-/// A simulation on the ROS graph. All but steps happens in the one thread that spins. It looks at a copy of what is
-/// stepped, which gets each state in turn.
+/// A simulation on the ROS graph. Except for steps, all happens in the thread that runs ros::spin(). This thread reads
+/// `shown_`, a copy of the simulation, to which it restores each state that the stepping thread reports.
 class Node {
  public:
-  /// Reads parameters and scene, and starts.
+  /// Reads parameters and scene, and starts the simulation.
   /// @throws ParameterError, ModelError if they cannot be used.
   Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// Steps of a paused simulation that somebody makes end, too (StepService).
+  /// Pauses the simulation. Also ends a call of ~step (StepService).
   void pause();
-  /// After a failed step, goes on from the last good state, with what was commanded since.
+  /// Goes on. After a failed step, first tries the step again from the last good state, with the commands that came
+  /// since.
   /// @returns false, and stays paused, if the step fails again; run().failure says why
   bool resume();
-  /// Back to the scene's initial state; time of the stamps goes on, and paused stays paused.
+  /// Goes back to the scene's initial state. Stamps go on, and a paused simulation stays paused.
   void reset();
-  /// The same, and time begins again at zero: /clock jumps back, and all stamps with it.
-  /// @returns why not, or nothing
+  /// Like reset(), but time begins again at zero: /clock and all stamps jump back.
+  /// @returns an error, or ""
   std::string reset_with_clock();
-  /// Reads the scene again, from where it came, and begins with its initial state; joints, links and sensors may be
-  /// others. Time of the stamps goes on, and paused stays paused; commands, wrenches and trajectories are over.
-  /// @throws ParameterError, ModelError, and others if it cannot be used; all is as before then.
+  /// Reads the scene again from its source, and begins with its initial state. Joints, links and sensors may differ.
+  /// Stamps go on, and a paused simulation stays paused. Commands, wrenches and trajectories end.
+  /// @throws ParameterError, ModelError and others if the scene cannot be used; then nothing has changed
   void reload();
-  /// Goes on with the scene that `edit` makes of this one (payloads.h), from the state of now. Commands go on. So do
-  /// trajectories, grips and wrenches if joints and links keep their places: what comes is behind the others, what goes
-  /// was the last; else they are over.
-  /// @throws what `edit` throws; all is as before then.
+  /// Adds or removes links: goes on from the present state with the scene that `edit` makes of the present one
+  /// (payloads.h). Commands stay. Trajectories, grips and wrenches stay if all remaining joints and links keep their
+  /// indices, that is, if new ones come last, or the last ones go. Otherwise trajectories, grips and wrenches end.
+  /// @throws what `edit` throws; then nothing has changed
   void edit(const std::function<void(Simulation&)>& edit);
-  /// Goes on, from the state of now, by other parameters, and by another scene if there is one, which must be the same
-  /// but for its <integrator>, gravity and gains of servos. What was commanded goes on.
-  /// @throws ModelError, std::invalid_argument if they cannot be used; all is as before then.
+  /// Goes on from the present state with other parameters and, if `scene` is given, with another scene. It may differ
+  /// from the present scene only in its <integrator>, gravity and gains of servos. Commands stay.
+  /// @throws ModelError, std::invalid_argument if they cannot be used; then nothing has changed
   void change(std::optional<scene::SceneDescription> scene, const Parameters& parameters);
-  /// Goes on from a state in a file; time of the stamps goes on, and paused stays paused. Applied wrenches are over.
-  /// @throws std::runtime_error as read_checkpoint(); all is as before then.
+  /// Goes on from a state in a file. Stamps go on, and a paused simulation stays paused. Applied wrenches end.
+  /// @throws std::runtime_error as read_checkpoint() does; then nothing has changed
   void load_state(const std::string& file);
-  /// Puts joints elsewhere, or gives them other velocities; commands and what they follow go on.
-  /// @throws std::invalid_argument as Simulation::set_joint_state(); all is as before then.
+  /// Gives joints other positions or velocities at once. Commands and trajectories stay.
+  /// @throws std::invalid_argument as Simulation::set_joint_state() does; then nothing has changed
   void set_joint_state(const std::vector<CoordinateState>& coordinates);
-  /// @returns why the modes cannot be switched, or nothing
+  /// Switches the modes of servos. @returns why they cannot be switched, or ""
   std::string switch_mode(const std::vector<std::string>& names, const std::vector<std::string>& modes);
-  /// @param start     by the stamps of messages; in the past: with the next step
+  /// @param start     as a stamp of messages; if it is in the past, the wrench acts from the next step on
   /// @param duration  [s]; < 0: for ever, 0: nothing, less than a step: one step
-  /// @throws std::invalid_argument as Simulation::apply_wrenches().
+  /// @throws std::invalid_argument as Simulation::apply_wrenches() does.
   void apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration);
-  /// Those of pulls, too.
+  /// Removes all applied wrenches and all pulls of rviz's handles.
   void clear_wrenches();
-  /// Makes a step of a paused simulation. @returns false if it failed; run().failure says why
+  /// Makes one step of a paused simulation. @returns false if it failed; run().failure says why
   bool step() { return advance(); }
-  /// Tells everybody of the state, whatever their rates.
+  /// Publishes the state on all topics, whatever their rates.
   void publish_state() { publish(true); }
   /// How often pause() was called.
   std::uint64_t pauses() const { return pauses_; }
@@ -92,44 +95,44 @@ class Node {
   const RunState& run() const { return run_; }
   const Parameters& parameters() const { return parameters_; }
   const Simulation& simulation() const { return shown_; }
-  /// What was commanded up to now is in simulation(), too.
+  /// Makes simulation() up to date, with the effects of all commands that have arrived.
   void catch_up();
 
  private:
   /// The names of all services.
   std::vector<std::string> service_names() const;
-  /// What is due now and then.
+  /// Does what is due regularly, every 0.1 s.
   void tick();
-  /// Publishes what steps came to.
+  /// Takes all reports of steps that wait, and publishes the states.
   void take_reports();
   void take(const StepReport& report);
-  /// One step while the thread is halted. @returns false if it failed
+  /// Makes one step while the stepping thread is halted. @returns false if it failed
   bool advance();
   void warn_of_recoveries(const StepReport& report);
   void be_real_time();
-  /// Lets rviz pull on links.
+  /// Makes the handles with which rviz pulls links.
   void be_interactive();
   void publish(bool force);
-  /// Says what is simulated.
+  /// Logs what is simulated.
   void announce() const;
-  /// What is stepped is of another scene than what is shown.
+  /// Replaces `shown_` and adapts topics after the stepping thread has got another scene.
   void adopt_scene();
-  /// Tells the clocks how fast steps are to be.
+  /// Tells stepping thread and clock how fast steps should be made.
   void set_pace();
-  /// Topics begin anew with their rates, and with any stamp.
+  /// Sets the rates of all topics and restarts their schedules: the next message may have any stamp.
   void set_rates();
-  /// Steps were made (see ClockPublisher), or something else is news.
+  /// Moves the clock on after steps (see ClockPublisher::advance()), or by one for other news.
   void advance_clock(std::uint64_t steps, std::uint64_t overruns, std::optional<ClockPublisher::WallTime> due);
   void publish_news();
-  /// Takes over the state of what is stepped, between two steps.
+  /// Copies the state of the stepped simulation to `shown_`, between two steps.
   void show();
-  /// The same, where it is another one than the last step's, and tells everybody.
+  /// Like show(), for a state that is not the result of a step; also publishes it.
   void show_new_state();
-  /// That, and nothing that was commanded before acts any more.
+  /// Like show_new_state(), and drops all commands and wrenches.
   void begin_anew();
-  /// That no reset sets back, when messages have that stamp [s].
+  /// Simulated time at which messages have that stamp; no reset sets it back [s].
   double simulated_time(const ros::Time& stamp) const;
-  /// Sets ~view, which tells displays where to look.
+  /// Sets the parameters below ~view, which tell displays where to look.
   void describe_view() const;
   void fail(const StepResult& result);
 
@@ -154,6 +157,7 @@ class Node {
   FrameWatch frame_watch_;
   std::optional<PullHandles> pull_handles_;
   PublicationSchedule handle_schedule_;
+  std::unique_ptr<WebPublisher> web_publisher_;  ///< null: there is no page
   Services services_;
   Reconfiguration reconfiguration_;
   MasterWatch master_watch_;

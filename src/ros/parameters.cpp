@@ -1,19 +1,67 @@
 #include "parameters.h"
 
 #include <ros/console.h>
+#include <ros/param.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "flexarm/math/near_names.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/schemes/integrator_description.h"
+#include "web/own_names.h"
 
 namespace flexarm::node {
 namespace {
 
-/// Reads parameters one by one and collects what is wrong with them.
+/// All that is read here and elsewhere, and `view`, which the node sets. test/ros/parameters_test.py compares it with
+/// the sources.
+const std::vector<std::string> kParameterNames = {"clock_rate",
+                                                  "command_timeout",
+                                                  "controllers",
+                                                  "diagnostic_period",
+                                                  "error_window",
+                                                  "frame_prefix",
+                                                  "interactive",
+                                                  "lock_step",
+                                                  "marker_rate",
+                                                  "markers",
+                                                  "massless",
+                                                  "max_catch_up",
+                                                  "max_halvings",
+                                                  "max_iterations",
+                                                  "on_failure",
+                                                  "parameters",
+                                                  "paused",
+                                                  "publish_clock",
+                                                  "publish_rate",
+                                                  "pull_damping",
+                                                  "pull_stiffness",
+                                                  "real_time_factor",
+                                                  "realtime",
+                                                  "recovery_wall_time",
+                                                  "rho_infinity",
+                                                  "scene",
+                                                  "scheme",
+                                                  "start",
+                                                  "status_rate",
+                                                  "step",
+                                                  "stop_duration",
+                                                  "tolerance",
+                                                  "trail_duration",
+                                                  "view",
+                                                  "web",
+                                                  "web_address",
+                                                  "web_port",
+                                                  "web_rate",
+                                                  "xacro_args"};
+
+/// Reads parameters one by one, and collects all errors.
 class ParameterReader {
  public:
   explicit ParameterReader(const ros::NodeHandle& node) : node_(node) {}
@@ -41,7 +89,7 @@ class ParameterReader {
     }
   }
 
-  /// Of the numbers of a dictionary.
+  /// Reads a dictionary of numbers.
   void read(const std::string& name, scene::ParameterValues& values) {
     XmlRpc::XmlRpcValue dictionary;
     if (!read_as(name, dictionary, "")) return;
@@ -80,7 +128,8 @@ class ParameterReader {
   std::string errors_;
 };
 
-/// As tf_prefix, for the sake of rviz, which joins the two by a slash: "left" and "left/" make "left/boom" of "boom".
+/// Follows the rule of tf_prefix and rviz, which join prefix and name with a slash: "left" and "left/" both turn the
+/// frame "boom" into "left/boom".
 void read_frame_prefix(ParameterReader& reader, std::string& prefix) {
   reader.read("frame_prefix", prefix);
   if (prefix.empty()) return;
@@ -120,7 +169,7 @@ void override_integrator(const ros::NodeHandle& private_node, IntegratorDescript
   reader.throw_if_any();
 }
 
-/// A parameter that may have one value only, or be empty: true where it has that.
+/// Reads a parameter that is either `choice` or empty. @returns whether it is `choice`
 bool read_choice(ParameterReader& reader, const std::string& name, const std::string& choice) {
   std::string value;
   reader.read(name, value);
@@ -128,7 +177,7 @@ bool read_choice(ParameterReader& reader, const std::string& name, const std::st
   return value == choice;
 }
 
-/// Words with commas between them; all, if there is none.
+/// Reads words that are separated by commas. If the parameter is empty, all markers are shown.
 void read_markers(ParameterReader& reader, messages::MarkerChoice& choice) {
   reader.read("trail_duration", choice.trail_duration);
   std::string choices;
@@ -150,7 +199,7 @@ void read_markers(ParameterReader& reader, messages::MarkerChoice& choice) {
   }
 }
 
-/// As `--start` on the command line: words with commas between them.
+/// Reads words that are separated by commas, as `--start` on the command line does.
 void read_start(ParameterReader& reader, scene::ReadOptions& options) {
   std::string choices;
   reader.read("start", choices);
@@ -166,6 +215,16 @@ void read_start(ParameterReader& reader, scene::ReadOptions& options) {
   }
 }
 
+void read_web(ParameterReader& reader, Parameters& parameters) {
+  reader.read("web", parameters.web);
+  reader.read("web_address", parameters.web_address);
+  reader.read("web_port", parameters.web_port, 0);
+  reader.read("web_rate", parameters.web_rate);
+  if (parameters.web_port > 65535) reader.complain("web_port", "must be <= 65535", std::to_string(parameters.web_port));
+  if (!web::is_address(parameters.web_address))
+    reader.complain("web_address", "must be an IP address, such as 127.0.0.1", "'" + parameters.web_address + "'");
+}
+
 scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   std::string path;
   scene::ReadOptions options;
@@ -176,7 +235,7 @@ scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::Node
   reader.read("parameters", options.parameters);
   reader.read("xacro_args", options.xacro_arguments);
   reader.throw_if_any();
-  // Nodes run in folders that nobody thinks of: messages are to say which file it is.
+  // The working folder of a node is seldom known: with an absolute path, messages name the file clearly.
   if (!path.empty()) return scene::read_scene_file(std::filesystem::absolute(path), options);
 
   std::string key, text;
@@ -211,8 +270,22 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("error_window", parameters.error_window, true);
   reader.read("stop_duration", parameters.stop_duration, true);
   read_frame_prefix(reader, parameters.frame_prefix);
+  read_web(reader, parameters);
   reader.throw_if_any();
   return parameters;
+}
+
+void warn_of_unknown_parameters(const ros::NodeHandle& private_node, const std::vector<std::string>& more) {
+  const std::string& place = private_node.getNamespace();
+  XmlRpc::XmlRpcValue given;
+  if (!ros::param::get(place, given) || given.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+  std::vector<std::string> known = kParameterNames;
+  known.insert(known.end(), more.begin(), more.end());
+  std::string unknown;
+  for (const auto& [name, value] : given)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      unknown += fmt::format("\n{}/{}{}", place, name, suggestion(name, known));
+  if (!unknown.empty()) ROS_WARN_STREAM("parameters that the node does not know, and that have no effect:" << unknown);
 }
 
 scene::SceneDescription read_scene(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {

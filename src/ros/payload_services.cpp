@@ -21,7 +21,7 @@ Spawn place_of(const SpawnModel::Request& request) {
   const geometry_msgs::Quaternion& q = request.pose.orientation;
   Spawn out;
   out.pose.position = messages::to_vector(request.pose.position);
-  // All zeros is what a message has that says nothing of it.
+  // All zeros: the message gives no orientation.
   if (q.w != 0 || q.x != 0 || q.y != 0 || q.z != 0) out.pose.orientation = Quaternion(q.w, q.x, q.y, q.z);
   out.linear = messages::to_vector(request.twist.linear);
   out.angular = messages::to_vector(request.twist.angular);
@@ -29,18 +29,20 @@ Spawn place_of(const SpawnModel::Request& request) {
   return out;
 }
 
-/// @throws std::invalid_argument with all that is wrong with it.
+/// @throws std::invalid_argument that lists all errors of the model
 scene::SceneDescription model_of(const SpawnModel::Request& request) {
   if (request.model_xml.empty() == request.file.empty())
     throw std::invalid_argument("a model is given by model_xml or by file, not by both or none");
-  scene::ReadResult read = request.file.empty() ? scene::read_scene_text(request.model_xml, "model_xml")
-                                                : scene::read_scene_file(request.file);
+  scene::ReadOptions options;
+  options.is_spawned = true;
+  scene::ReadResult read = request.file.empty() ? scene::read_scene_text(request.model_xml, "model_xml", options)
+                                                : scene::read_scene_file(request.file, options);
   if (!read.scene) throw std::invalid_argument("the model cannot be used:\n" + scene::to_text(read.diagnostics));
   for (const scene::Diagnostic& warning : read.diagnostics) ROS_WARN_STREAM(warning.text());
   return *std::move(read.scene);
 }
 
-/// `act(simulation, request)` as the answer of a service.
+/// Advertises a service that calls `act(simulation, request)`; its exceptions become the answer's message.
 template <class Service, class Act>
 ros::ServiceServer serve(ros::NodeHandle& private_node, const std::string& name, Node& simulator, const Act& act) {
   const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =

@@ -1,5 +1,5 @@
 #pragma once
-/// ~attach, ~detach, ~spawn, ~delete.
+/// The services ~attach, ~detach, ~spawn and ~delete.
 
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
@@ -10,7 +10,7 @@ namespace flexarm::node {
 
 class Node;
 
-/// Of services that change what is simulated while it moves.
+/// Advertises these services, which add and remove links while the simulation moves.
 std::vector<ros::ServiceServer> serve_payloads(ros::NodeHandle& private_node, Node& simulator);
 
 }  // namespace flexarm::node

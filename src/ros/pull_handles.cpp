@@ -7,13 +7,13 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "messages/conversions.h"
-#include "messages/scene_extent.h"
+#include "pictures/scene_extent.h"
 
 namespace flexarm::node {
 namespace {
 
-constexpr double kSize = 0.06;  ///< of a handle, as a part of the scene's radius
-/// rviz is heard of four times a second while it drags.
+constexpr double kSize = 0.06;  ///< size of a handle per radius of the scene
+/// rviz sends feedback four times a second while a marker is dragged.
 constexpr std::chrono::milliseconds kPatience(1500);
 constexpr double kPullWarningPeriod = 1;  // s
 
@@ -44,7 +44,7 @@ PullHandles::PullHandles(const ros::NodeHandle& private_node, const Simulation& 
       apply_(std::move(apply)),
       server_(private_node.resolveName("pull")) {
   add_handles();
-  const double size = kSize * messages::scene_extent(shown).radius;
+  const double size = kSize * pictures::scene_extent(shown).radius;
   for (const Handle& handle : handles_) show(handle, size);
   for (Handle& handle : handles_)
     server_.setCallback(shown_.link_names()[handle.link],
@@ -78,7 +78,7 @@ void PullHandles::add_handles() {
 
 void PullHandles::show(const Handle& handle, double size) {
   visualization_msgs::InteractiveMarker marker;
-  // Without a stamp rviz gives back what it does in this frame, whatever its fixed one is.
+  // No stamp, so that rviz answers in this frame, whatever its fixed frame is.
   marker.header.frame_id = root_frame_;
   marker.name = shown_.link_names()[handle.link];
   marker.scale = static_cast<float>(size);
@@ -109,7 +109,7 @@ void PullHandles::receive(Handle& handle, const Feedback& feedback) {
   const Vector3 target = messages::to_vector(feedback.pose.position);
   if (feedback.header.frame_id != root_frame_ || !target.allFinite()) {
     ROS_WARN_STREAM_THROTTLE(kPullWarningPeriod, "'" << feedback.marker_name
-                                                     << "' is not pulled: expected a finite place in "
+                                                     << "' is not pulled: expected finite coordinates in "
                                                      << "frame '" << root_frame_ << "', got " << target.transpose()
                                                      << " in '" << feedback.header.frame_id << "'");
     return;

@@ -1,5 +1,5 @@
 #pragma once
-/// Handles in rviz by which links are pulled.
+/// Handles in rviz with which the user pulls links.
 
 #include <interactive_markers/interactive_marker_server.h>
 #include <ros/node_handle.h>
@@ -15,26 +15,26 @@
 
 namespace flexarm::node {
 
-/// One interactive marker on each link that moves: at the link's first probe or, where it has none, at the tip of a
-/// flexible link and the centre of mass of a rigid one. As long as it is dragged, a spring and a damper pull that point
-/// to the mouse.
+/// Makes an interactive marker for each link that can move: at the link's first probe or, if it has none, at the tip of
+/// a flexible link or at the centre of mass of a rigid link. While the user drags a marker, a spring and a damper pull
+/// the point of the link towards the mouse.
 class PullHandles {
  public:
   struct Spring {
     double stiffness, damping;  ///< [N/m], [N s/m]
   };
   using Apply = std::function<void(const std::vector<AppliedWrench>&)>;
-  /// @param apply  takes all pulls that act from now on, in place of those of before
+  /// @param apply  gets all pulls that act from then on; they replace the earlier ones
   PullHandles(const ros::NodeHandle& private_node, const Simulation& shown, const std::string& root_frame,
               const Spring& spring, Apply apply);
   PullHandles(const PullHandles&) = delete;
   PullHandles& operator=(const PullHandles&) = delete;
 
-  /// Those that are not dragged go where their points are.
+  /// Moves handles that are not dragged to their points.
   void follow();
-  /// Now and then: who drags and is not heard of any more has let go.
+  /// To be called regularly: releases handles whose rviz has not sent anything for a while.
   void let_go_of_lost();
-  /// What pulled does not any more, whoever still drags.
+  /// Ends all pulls, even of handles that are still dragged.
   void forget();
 
  private:
@@ -42,9 +42,9 @@ class PullHandles {
   using Feedback = visualization_msgs::InteractiveMarkerFeedback;
   struct Handle {
     std::size_t link;
-    Vector3 at;                       ///< in the undeformed link's frame [m]
-    std::function<Vector3()> place;   ///< in the world [m]
-    std::optional<Vector3> target;    ///< where it is dragged to, in the world [m]
+    Vector3 at;                       ///< the point, in the undeformed link's frame [m]
+    std::function<Vector3()> place;   ///< gives the present position of the point in the world [m]
+    std::optional<Vector3> target;    ///< where the user drags it to, in the world [m]; empty: not dragged
     Clock::time_point last_feedback;  ///< while it is dragged
   };
 

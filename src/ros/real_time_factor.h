@@ -1,13 +1,13 @@
 #pragma once
-/// How fast the simulation really goes.
+/// Measures how fast the simulation really goes.
 
 #include <chrono>
 #include <utility>
 
 namespace flexarm::node {
 
-/// Simulated per wall time. Steps come in bursts, so that a measurement takes a while: what is asked for sooner is
-/// answered with the last one.
+/// Simulated time per wall time. Steps come in bursts, so a measurement needs some time: a call less than kShortest
+/// after the last measurement returns the last result.
 class RealTimeFactor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -15,8 +15,8 @@ class RealTimeFactor {
 
   explicit RealTimeFactor(Clock::time_point now) : wall_time_(now) {}
 
-  /// The factor since the measurement before; 0 while paused, and at the first call after a pause.
-  /// @param simulated_time  that no reset sets back [s]
+  /// The factor since the last measurement; 0 while paused, and in the first call after a pause.
+  /// @param simulated_time  which no reset sets back [s]
   double measure(double simulated_time, Clock::time_point now, bool paused) {
     const bool was_paused = std::exchange(paused_, paused);
     const Clock::duration elapsed = now - wall_time_;

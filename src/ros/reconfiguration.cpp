@@ -23,7 +23,7 @@ using scene::ServoDescription;
 
 constexpr const char* kScheme = "scheme";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSmallest = std::numeric_limits<double>::min();  ///< of what must be > 0
+constexpr double kSmallest = std::numeric_limits<double>::min();  ///< lower bound of parameters that must be > 0
 
 template <class Parameter, class Value>
 Parameter named(const std::string& name, const Value& value) {
@@ -33,7 +33,7 @@ Parameter named(const std::string& name, const Value& value) {
   return parameter;
 }
 
-/// The choices, as dynamic_reconfigure's generators write them: a literal of Python.
+/// The enumeration of schemes in the format of dynamic_reconfigure's generators: a Python literal.
 std::string choice_of_schemes() {
   std::string choices;
   for (const std::string_view scheme : scheme_names())
@@ -75,26 +75,26 @@ Reconfiguration::Reconfiguration(ros::NodeHandle& private_node, Node& simulator)
 std::vector<Reconfiguration::Number> Reconfiguration::numbers_of(const scene::SceneDescription& scene) {
   using Owner = Number::Owner;
   std::vector<Number> numbers = {
-      {"step", "of the time integration [s]", Owner::Integrator, kSmallest, kLongestStep,
+      {"step", "time step [s]", Owner::Integrator, kSmallest, kLongestStep,
        [](Settings& s) -> double& { return s.scene.integrator.step; }},
-      {"tolerance", "of Newton's method, relative", Owner::Integrator, kSmallest, kLargestTolerance,
+      {"tolerance", "tolerance of Newton's method, relative", Owner::Integrator, kSmallest, kLargestTolerance,
        [](Settings& s) -> double& { return s.scene.integrator.tolerance; }},
-      {"real_time_factor", "simulated per wall time; 0: as fast as possible", Owner::Node, 0, kInfinity,
+      {"real_time_factor", "simulated time per wall time; 0: as fast as possible", Owner::Node, 0, kInfinity,
        [](Settings& s) -> double& { return s.parameters.real_time_factor; }},
-      {"publish_rate", "of joint_states, /tf and beam_states [Hz]", Owner::Node, kSmallest, kInfinity,
+      {"publish_rate", "rate of joint_states, /tf and beam_states [Hz]", Owner::Node, kSmallest, kInfinity,
        [](Settings& s) -> double& { return s.parameters.publish_rate; }},
-      {"marker_rate", "of beam_markers [Hz]", Owner::Node, kSmallest, kInfinity,
+      {"marker_rate", "rate of beam_markers [Hz]", Owner::Node, kSmallest, kInfinity,
        [](Settings& s) -> double& { return s.parameters.marker_rate; }},
-      {"status_rate", "of ~status [Hz]", Owner::Node, kSmallest, kInfinity,
+      {"status_rate", "rate of ~status [Hz]", Owner::Node, kSmallest, kInfinity,
        [](Settings& s) -> double& { return s.parameters.status_rate; }},
   };
   for (int axis = 0; axis < 3; ++axis)
-    numbers.push_back({std::string("gravity_") + "xyz"[axis], "in the world's axes [m/s^2]", Owner::Scene, -kInfinity,
-                       kInfinity, [axis](Settings& s) -> double& { return s.scene.gravity[axis]; }});
+    numbers.push_back({std::string("gravity_") + "xyz"[axis], "gravity in the world's axes [m/s^2]", Owner::Scene,
+                       -kInfinity, kInfinity, [axis](Settings& s) -> double& { return s.scene.gravity[axis]; }});
   const auto add_gain = [&](const std::string& name, auto place) {
     numbers.push_back({name, "gain of a servo", Owner::Scene, 0, kInfinity, place});
   };
-  // Those that the mode has (scene_format.md).
+  // Only the gains that the mode has (docs/scene/drives.md).
   const auto add_gains = [&](const std::string& prefix, ServoMode mode, const auto& gains) {
     if (mode == ServoMode::Effort) return;
     add_gain(prefix + "/kp", [gains](Settings& s) -> double& { return gains(s).kp; });
@@ -141,7 +141,7 @@ dynamic_reconfigure::ConfigDescription Reconfiguration::description() const {
   description.min.strs[0].value = description.max.strs[0].value = "";
   dynamic_reconfigure::Group& group = description.groups.emplace_back();
   group.name = "Default";
-  group.parameters.push_back(described(kScheme, "str", "of the time integration", choice_of_schemes()));
+  group.parameters.push_back(described(kScheme, "str", "scheme of the time integration", choice_of_schemes()));
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     const Number& number = numbers_[i];
     group.parameters.push_back(described(number.name, "double", number.description));
@@ -166,7 +166,7 @@ bool Reconfiguration::set(dynamic_reconfigure::Reconfigure::Request& request,
   if (fault.empty())
     keep(wanted, !request.config.strs.empty());
   else
-    ROS_WARN_STREAM(server_.getService() << " refused, all stays as it was: " << fault);
+    ROS_WARN_STREAM(server_.getService() << " refused, nothing was changed: " << fault);
   response.config = config();
   updates_.publish(response.config);
   return true;
@@ -184,16 +184,17 @@ std::string Reconfiguration::read(const Config& config, Request& wanted) const {
   };
   std::string fault = read_all(config.strs, [&](const auto& parameter) { return read_scheme(parameter, wanted); });
   if (fault.empty()) fault = read_all(config.doubles, number);
-  if (fault.empty()) fault = read_all(config.ints, number);  // who writes 1 for 1.0 means it
+  if (fault.empty()) fault = read_all(config.ints, number);  // clients may write 1 for 1.0
   if (fault.empty())
-    fault = read_all(config.bools, [](const auto& parameter) { return "'" + parameter.name + "' is no switch"; });
+    fault = read_all(config.bools,
+                     [](const auto& parameter) { return "'" + parameter.name + "' is not a boolean parameter"; });
   return fault;
 }
 
 std::string Reconfiguration::read_number(const std::string& name, double value, Request& wanted) const {
   const auto number =
       std::find_if(numbers_.begin(), numbers_.end(), [&](const Number& one) { return one.name == name; });
-  if (number == numbers_.end()) return "there is no number '" + name + "'";
+  if (number == numbers_.end()) return "there is no numeric parameter '" + name + "'";
   if (!std::isfinite(value) || value < number->least || value > number->most)
     return fmt::format("'{}' must be {}, got {}", name, range(number->least, number->most), value);
   double& place = number->place(wanted.settings);
@@ -204,7 +205,7 @@ std::string Reconfiguration::read_number(const std::string& name, double value, 
 }
 
 std::string Reconfiguration::read_scheme(const dynamic_reconfigure::StrParameter& parameter, Request& wanted) const {
-  if (parameter.name != kScheme) return "there is no text '" + parameter.name + "'";
+  if (parameter.name != kScheme) return "there is no text parameter '" + parameter.name + "'";
   IntegratorDescription& integrator = wanted.settings.scene.integrator;
   if (parameter.value == integrator.scheme) return {};
   const std::vector<std::string_view>& known = scheme_names();
@@ -216,7 +217,7 @@ std::string Reconfiguration::read_scheme(const dynamic_reconfigure::StrParameter
 }
 
 void Reconfiguration::keep(Request& done, bool keeps_scheme) const {
-  if (!ros::master::check()) return;  // to set a parameter waits for it
+  if (!ros::master::check()) return;  // setParam() would wait for a master that is gone
   if (keeps_scheme) private_node_.setParam(kScheme, done.settings.scene.integrator.scheme);
   for (const Number* number : done.numbers)
     if (number->owner != Number::Owner::Scene) private_node_.setParam(number->name, number->place(done.settings));

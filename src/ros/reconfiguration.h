@@ -1,5 +1,5 @@
 #pragma once
-/// What may be changed while the simulation runs, for dynamic_reconfigure.
+/// Serves dynamic_reconfigure: parameters that may change while the simulation runs.
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/ConfigDescription.h>
@@ -19,16 +19,16 @@ namespace flexarm::node {
 
 class Node;
 
-/// ~set_parameters, ~parameter_descriptions and ~parameter_updates, as clients of dynamic_reconfigure expect them. What
-/// parameters there are depends on the scene: each servo has gains. A request is carried out whole, or refused whole
-/// with a warning; the answer says what is in force.
+/// Provides ~set_parameters, ~parameter_descriptions and ~parameter_updates for clients of dynamic_reconfigure. The
+/// parameters depend on the scene, since each servo has gains. A request is either carried out or, with a warning,
+/// refused as a whole. The answer contains the values that are then in force.
 class Reconfiguration {
  public:
   Reconfiguration(ros::NodeHandle& private_node, Node& simulator);
   Reconfiguration(const Reconfiguration&) = delete;
   Reconfiguration& operator=(const Reconfiguration&) = delete;
 
-  /// Tells what there is, and what is in force: at the start, and where the simulation is of another scene.
+  /// Publishes descriptions and values of all parameters: at the start, and after the simulation has got another scene.
   void describe();
   std::string service() const { return server_.getService(); }
 
@@ -37,7 +37,7 @@ class Reconfiguration {
     scene::SceneDescription scene;
     Parameters parameters;
   };
-  /// A parameter that is a number. There is one that is not, "scheme".
+  /// A parameter that is a number. All are numbers but "scheme".
   struct Number {
     enum class Owner {
       Node,        ///< a private parameter
@@ -49,21 +49,21 @@ class Reconfiguration {
     double least, most;
     std::function<double&(Settings&)> place;
   };
-  /// What somebody asks for.
+  /// The content of a request.
   struct Request {
     Settings settings;
     bool changes_scene = false;
-    std::vector<const Number*> numbers;  ///< that are named
+    std::vector<const Number*> numbers;  ///< that the request names
   };
 
   static std::vector<Number> numbers_of(const scene::SceneDescription& scene);
   Settings settings() const;
   bool set(dynamic_reconfigure::Reconfigure::Request& request, dynamic_reconfigure::Reconfigure::Response& response);
-  /// Reads what is wanted. @returns why it cannot be had, or nothing
+  /// Reads a request. @returns why it is refused, or ""
   std::string read(const dynamic_reconfigure::Config& config, Request& wanted) const;
   std::string read_number(const std::string& name, double value, Request& wanted) const;
   std::string read_scheme(const dynamic_reconfigure::StrParameter& parameter, Request& wanted) const;
-  /// Parameters of the node that were changed stay so where the scene is read again.
+  /// Stores changed parameters of the node on the parameter server, so that they survive ~reload.
   void keep(Request& done, bool keeps_scheme) const;
   dynamic_reconfigure::Config config() const;
   dynamic_reconfigure::ConfigDescription description() const;

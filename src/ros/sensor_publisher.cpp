@@ -25,7 +25,7 @@ void SensorPublisher::adopt_scene() {
     Topic& topic = topics_[name];
     topic.sensor = i;
     topic.type = type.index();
-    // A publisher of another type has to go before the topic can be advertised again.
+    // If the type changes, the old publisher must be destroyed before the topic can be advertised again.
     if (const auto old = before.find(name); old != before.end()) {
       if (old->second.type == topic.type) topic.publisher = old->second.publisher;
       before.erase(old);

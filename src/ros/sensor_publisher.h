@@ -1,5 +1,5 @@
 #pragma once
-/// sensors/NAME: what the scene's sensors measure.
+/// Publishes the samples of the scene's sensors on sensors/NAME.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -13,7 +13,7 @@
 
 namespace flexarm::node {
 
-/// Each sensor has a topic of its own, on which each sample is sent once, at the sensor's rate.
+/// Each sensor has a topic of its own. Each sample is sent once, at the sensor's rate.
 class SensorPublisher {
  public:
   SensorPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
@@ -21,17 +21,17 @@ class SensorPublisher {
   SensorPublisher(const SensorPublisher&) = delete;
   SensorPublisher& operator=(const SensorPublisher&) = delete;
 
-  /// The simulation is of another scene now. Topics that both have stay.
+  /// To be called after the simulation has got another scene. Topics of sensors that exist in both scenes stay.
   void adopt_scene();
-  /// Sends what was sampled since the last call.
+  /// Sends the samples that were taken since the last call.
   void publish(const ros::Time& stamp);
 
  private:
   struct Topic {
-    std::size_t sensor = 0, type = 0;  ///< by index; of its messages
+    std::size_t sensor = 0, type = 0;  ///< index of the sensor; index of its message type
     ros::Publisher publisher;
     double sampled = -1;  ///< simulated time of the last sample that was sent [s]
-    ros::Time stamp;      ///< of that
+    ros::Time stamp;      ///< of the last sample that was sent
   };
 
   const Simulation& simulation_;

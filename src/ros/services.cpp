@@ -16,6 +16,7 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/checkpoint.h"
+#include "flexarm/simulation/command_refusal.h"
 #include "messages/conversions.h"
 #include "node.h"
 #include "payload_services.h"
@@ -29,7 +30,7 @@ bool pause(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response
 }
 
 bool resume(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-  // An exception's text reaches the caller, an answer without fields has no place for it.
+  // std_srvs/Empty has no field for an error. An exception's text does reach the caller.
   if (!simulator.resume()) throw std::runtime_error("not resumed: " + simulator.run().failure);
   return true;
 }
@@ -52,7 +53,7 @@ bool reload(Node& simulator, std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     response.message = "scene '" + simulator.simulation().scene().name + "'";
   } catch (const std::exception& error) {
     response.message = error.what();
-    ROS_WARN_STREAM("~reload: the scene stays as it was: " << error.what());
+    ROS_WARN_STREAM("~reload: the scene was not changed: " << error.what());
   }
   return true;
 }
@@ -93,7 +94,7 @@ bool set_joint_state(Node& simulator, SetJointState::Request& request, SetJointS
   for (std::size_t i = 0; i < count; ++i) {
     const std::optional<std::size_t> coordinate = simulator.simulation().find_coordinate(request.names[i]);
     if (!coordinate) {
-      response.message = "there is no joint coordinate '" + request.names[i] + "'";
+      response.message = unknown_coordinate(simulator.simulation(), request.names[i]);
       return true;
     }
     CoordinateState& wanted = coordinates.emplace_back();
@@ -169,7 +170,7 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) {
   add("apply_wrench", apply_wrench);
   add("clear_wrenches", clear_wrenches);
   for (ros::ServiceServer& server : serve_payloads(private_node, simulator)) servers_.push_back(server);
-  step_service_.emplace(private_node, simulator);  // the last: who waits for it finds the others
+  step_service_.emplace(private_node, simulator);  // the last one: a client that waits for it finds the others
 }
 
 std::vector<std::string> Services::names() const {

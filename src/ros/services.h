@@ -1,6 +1,6 @@
 #pragma once
-/// ~pause, ~resume, ~reset, ~reset_with_clock, ~reload, ~step; ~save_state, ~load_state, ~set_joint_state;
-/// ~switch_mode; ~apply_wrench, ~clear_wrenches; ~attach, ~detach, ~spawn, ~delete.
+/// The node's services: ~pause, ~resume, ~reset, ~reset_with_clock, ~reload, ~step; ~save_state, ~load_state,
+/// ~set_joint_state; ~switch_mode; ~apply_wrench, ~clear_wrenches; ~attach, ~detach, ~spawn, ~delete.
 
 #include <ros/node_handle.h>
 #include <ros/service_server.h>

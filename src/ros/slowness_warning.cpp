@@ -9,7 +9,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr double kPeriod = 10;  ///< of warnings, wall time [s]
+constexpr double kPeriod = 10;  ///< least wall time between warnings [s]
 
 }  // namespace
 
@@ -25,10 +25,10 @@ void SlownessWarning::warn_if_slow(double step) {
   if (warned_overruns_ > 0 && std::chrono::duration<double>(now - last_warning_).count() < kPeriod) return;
   const std::string recoveries = recoveries_text(slowest_.counts);
   ROS_WARN(
-      "slower than asked for, simulated time lags: %lu steps of %g s dropped; the slowest one took %.2g s, to "
-      "t = %g s: %s",
+      "slower than real_time_factor, simulated time lags behind: %lu steps of %g s dropped; the slowest step took "
+      "%.2g s, to t = %g s: %s",
       run_.overruns - warned_overruns_, step, slowest_.seconds, slowest_.time,
-      recoveries.empty() ? "the scene is too large, or the processor busy" : recoveries.c_str());
+      recoveries.empty() ? "the scene is too large, or the processor is busy" : recoveries.c_str());
   warned_overruns_ = run_.overruns;
   last_warning_ = now;
   slowest_ = {};

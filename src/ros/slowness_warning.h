@@ -1,5 +1,5 @@
 #pragma once
-/// Tells that the simulation is slower than it is asked to be.
+/// Warns if the simulation is slower than it should be.
 
 #include <chrono>
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace flexarm::node {
 
-/// Where steps have been dropped since the last warning, not too often: how many, and why.
+/// If steps were dropped since the last warning, warns how many, and why; at most every 10 s.
 class SlownessWarning {
  public:
   explicit SlownessWarning(const RunState& run) : run_(run) {}
 
-  /// After a step: `seconds` it took by the clock on the wall, `time` simulated at its end [s].
+  /// Notes a step that took `seconds` of wall time; `time`: simulated time at its end [s].
   void note(double seconds, double time, const StepResult& result);
-  /// Now and then. `step` [s]
+  /// To be called regularly. `step`: length of a step [s]
   void warn_if_slow(double step);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Stamps in ROS time, where this node is not the clock.
+/// Stamps in ROS time, for a node that does not publish /clock.
 
 #include <ros/time.h>
 
@@ -10,21 +10,24 @@
 
 namespace flexarm::node {
 
-/// Steps that keep pace with the wall clock are when they were due by it: as even as simulated time is, whatever delays
-/// a step or a message. Others are the present. Each stamp is later than the one before.
+/// If a step keeps pace with the wall clock, its stamp is the time at which it was due. So stamps are as evenly spaced
+/// as simulated time, even if a step or a message is late. Otherwise the stamp is the present ROS time. Each stamp is
+/// later than the one before, unless ROS time was set back.
 class Stamps {
  public:
-  /// By which stamps and ROS time may come apart [s]: a backlog that is made up makes less; more, that somebody has set
-  /// the clock, forth or back.
+  /// Largest difference between a due time and the present ROS time [s]. A backlog of steps makes less. If the
+  /// difference is larger, somebody has set the clock, forward or back.
   static constexpr double kLargestError = 1;
 
-  /// @param period  of steps by the wall clock [s]
+  /// @param period  wall time from one step to the next [s]
   explicit Stamps(double period) : period_(period) {}
 
-  /// The stamp of a state. `now`: in ROS time. `steps`: those made and those dropped, since the beginning. `since_due`:
-  /// where the step keeps pace, how long ago it was to begin [s]. `largest_lead`: farther than this the last stamp is
-  /// not ahead of `now`, unless somebody has set ROS time back [s].
-  /// @returns false if he has, and stamps with it
+  /// Computes the stamp of a state.
+  /// @param now           ROS time
+  /// @param steps         steps made and dropped since the start
+  /// @param since_due     for a step that keeps pace: how long ago it was due to begin [s]
+  /// @param largest_lead  if the last stamp is farther ahead of `now`, somebody has set ROS time back [s]
+  /// @returns false if somebody has set ROS time back, and the stamp with it
   [[nodiscard]] bool advance(const ros::Time& now, std::uint64_t steps, std::optional<double> since_due,
                              double largest_lead) {
     const ros::Time present = since_due ? now - ros::Duration(*since_due) : now;
@@ -43,11 +46,11 @@ class Stamps {
     stamp_ = is_set_back ? present : std::max(present, soonest);
     return !is_set_back;
   }
-  /// Zero: there is none yet.
+  /// The last stamp; zero if there is none yet.
   const ros::Time& last() const { return stamp_; }
-  /// Steps are counted anew, from the next one on.
+  /// The count of due steps begins with the next step.
   void restart() { is_mapped_ = false; }
-  /// Of the steps to come [s].
+  /// Sets the wall time from one step to the next [s].
   void set_period(double period) {
     period_ = period;
     restart();
@@ -55,7 +58,7 @@ class Stamps {
 
  private:
   double period_;
-  ros::Time stamp_, origin_;  // the last one, and the one from which due steps are counted
+  ros::Time stamp_, origin_;  // the last stamp; the stamp from which due steps are counted
   std::uint64_t origin_steps_ = 0;
   bool is_mapped_ = false;
 };

@@ -10,7 +10,7 @@ namespace flexarm::node {
 StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
                                const std::string& frame_prefix)
     : simulation_(simulation), frame_prefix_(frame_prefix), schedule_(rate) {
-  // Who takes what he gets in bursts misses nothing of a second.
+  // Subscribers that read in bursts lose no message within a second.
   const auto queue_size = static_cast<std::uint32_t>(std::clamp(rate, 100.0, 1e5));
   joint_state_publisher_ =
       advertise<sensor_msgs::JointState>(node, "joint_states", queue_size, run, [this] { return joint_states(); });

@@ -1,5 +1,5 @@
 #pragma once
-/// joint_states, /tf and /tf_static.
+/// Publishes joint_states, /tf and /tf_static.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -15,27 +15,27 @@
 
 namespace flexarm::node {
 
-/// Publishes joints and frames; those that never change go to /tf_static, once. Who comes while the simulation is
-/// paused is told where the arm stands (see advertise.h).
+/// Frames that never change go to /tf_static, once. A subscriber that connects while the simulation is paused gets the
+/// present state at once (see advertise.h).
 class StatePublisher {
  public:
-  /// All names of frames begin with `frame_prefix`, which may be empty.
+  /// @param frame_prefix  put before all names of frames; may be empty
   StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
                  const std::string& frame_prefix);
   StatePublisher(const StatePublisher&) = delete;
   StatePublisher& operator=(const StatePublisher&) = delete;
 
-  /// The simulation is of another scene now.
+  /// To be called after the simulation has got another scene.
   void adopt_scene();
-  /// Begins anew at a rate [Hz], with any stamp.
+  /// Sets the rate [Hz] and restarts the schedule: the next message may have any stamp, even an earlier one.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   /// Sends the state if it is due (see PublicationSchedule).
   void publish(const ros::Time& stamp, bool force);
-  /// The names of all frames that are published, static ones too.
+  /// The names of all frames that are published, including static ones.
   const std::unordered_set<std::string>& frames() const { return messages_->frames(); }
 
  private:
-  /// As they are now, with the last stamp.
+  /// Joint states and frames of the present state, with the last stamp.
   const sensor_msgs::JointState& joint_states();
   const tf2_msgs::TFMessage& transforms();
 

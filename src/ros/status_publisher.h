@@ -1,5 +1,5 @@
 #pragma once
-/// ~status: time, energies, momenta, how the solver and the pacing are doing.
+/// Publishes the topic ~status: time, energies, momenta, figures of the solver and of the pace.
 
 #include <flexarm/SimulatorStatus.h>
 #include <ros/node_handle.h>
@@ -21,10 +21,10 @@ class StatusPublisher {
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
 
-  /// Begins anew at a rate [Hz], with any stamp.
+  /// Sets the rate [Hz] and restarts the schedule: the next message may have any stamp, even an earlier one.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
-  /// Sends the status if it is due. `force` sends it in any case: where the stamp is not new, which happens when the
-  /// simulation pauses right after a status, it is moved on by a nanosecond.
+  /// Sends the status if it is due, or in any case with `force`. If the stamp was already used, which happens if the
+  /// simulation pauses right after a status, a forced status gets a stamp one nanosecond later.
   void publish(ros::Time stamp, bool force);
 
  private:
@@ -35,8 +35,8 @@ class StatusPublisher {
   PublicationSchedule schedule_;
   std::string frame_prefix_;
   RealTimeFactor real_time_factor_{RealTimeFactor::Clock::now()};
-  ros::Time stamp_;    ///< of what was published last
-  double factor_ = 0;  ///< simulated per wall time, as it was then
+  ros::Time stamp_;    ///< of the last message
+  double factor_ = 0;  ///< real-time factor in that message
   ros::Publisher publisher_;
 };
 

@@ -9,8 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kMostSteps = 1000000;  ///< of one call
-/// For which steps are made before others have their turn.
+constexpr std::uint32_t kMostSteps = 1000000;  ///< per call
+/// How long steps are made before other callbacks are served.
 constexpr std::chrono::milliseconds kTurn(10);
 
 ros::ServiceServer advertise_step(ros::NodeHandle& node, ros::CallbackQueue& queue,
@@ -66,7 +66,7 @@ void StepService::go_on() {
     if (!simulator_.step()) return end(simulator_.run().failure);
     ++made_;
   } while (Clock::now() < turn);
-  bell_.ring();  // the others come first
+  bell_.ring();  // other callbacks come first
 }
 
 std::string StepService::refusal() const {

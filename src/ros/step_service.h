@@ -1,5 +1,5 @@
 #pragma once
-/// ~step.
+/// The service ~step.
 
 #include <flexarm/Step.h>
 #include <ros/callback_queue.h>
@@ -18,9 +18,9 @@ namespace flexarm::node {
 
 class Node;
 
-/// Makes the steps that are asked for, many at a call. They are made by the thread that spins, as all that concerns the
-/// node, but a few at a time: in between it serves everybody else, the emergency stop above all. Who has called waits
-/// in a thread of the service's own, and other callers of ~step behind him.
+/// Makes the requested number of steps. As everything that changes the node, steps are made by the thread that runs
+/// ros::spin(), but only a few at a time. In between this thread serves other callbacks, above all the emergency stop.
+/// The caller waits in a thread of this service; further calls of ~step wait behind it.
 class StepService {
  public:
   StepService(ros::NodeHandle& private_node, Node& simulator);
@@ -31,21 +31,21 @@ class StepService {
   const ros::ServiceServer& server() const { return server_; }
 
  private:
-  // ---- by the service's thread
+  // ---- called by the service's thread
   bool answer(Step::Request& request, Step::Response& response);
 
-  // ---- by the thread that spins
+  // ---- called by the thread that runs ros::spin()
   void go_on();
-  /// Why the call cannot be served, or nothing.
+  /// Why the call cannot be served, or "".
   std::string refusal() const;
   void end(const std::string& fault);
 
   Node& simulator_;
   std::mutex mutex_;
   std::condition_variable end_;
-  Step::Response* response_ = nullptr;  ///< of the call under way; null: there is none
+  Step::Response* response_ = nullptr;  ///< of the current call; null: no call
   std::uint32_t asked_ = 0, made_ = 0;
-  std::uint64_t pauses_ = 0;  ///< of the node, as the call began
+  std::uint64_t pauses_ = 0;  ///< Node::pauses() when the call began
   bool is_over_ = false;
   ros::CallbackQueue queue_;  ///< of calls
   Bell bell_;

@@ -1,5 +1,5 @@
 #pragma once
-/// Trajectories of a group of joints from an action, as joint_trajectory_controller has it.
+/// An action to follow trajectories with a group of joints, like that of joint_trajectory_controller.
 
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace flexarm::node {
 
-/// Lets servos of mode position follow what the action asks for. What a goal does not name goes on as it was.
+/// Makes servos of mode `position` follow the goal's trajectory. Joints that the goal does not name are not affected.
 class TrajectoryController : public JointController {
  public:
   TrajectoryController(ros::NodeHandle& node, const ControllerDescription& description, Motions& motions, Take take);
@@ -29,8 +29,8 @@ class TrajectoryController : public JointController {
   void publish_feedback(double now);
 
   std::vector<std::string> group_;            ///< empty: all joints
-  TrajectoryGoal goal_;                       ///< under way; has the same joints
-  double next_feedback_ = 0;                  ///< [s]
+  TrajectoryGoal goal_;                       ///< the current goal, with the same joints as joints_
+  double next_feedback_ = 0;                  ///< simulated time of the next feedback [s]
   std::vector<JointPoint> desired_, actual_;  ///< of the goal's joints
   Server action_;
 };

@@ -9,7 +9,7 @@ namespace {
 
 using Judgement = TrajectoryGoal::Judgement;
 
-/// The first joint beyond its tolerance makes it `violated`; else it is `kept`.
+/// `violated` with the first joint that exceeds its tolerance, or `kept` if there is none.
 Judgement compared(const std::vector<JointTolerance>& tolerances, const std::vector<JointPoint>& desired,
                    const std::vector<JointPoint>& actual, TrajectoryGoal::Verdict kept,
                    TrajectoryGoal::Verdict violated) {
@@ -31,7 +31,7 @@ std::string fault_of_tolerances(const std::vector<control::JointTolerance>& give
                                 const std::vector<std::string>& names) {
   for (const control::JointTolerance& tolerance : given) {
     if (std::find(names.begin(), names.end(), tolerance.name) == names.end())
-      return "a tolerance is of '" + tolerance.name + "', which the trajectory does not name";
+      return "a tolerance is given for '" + tolerance.name + "', which the trajectory does not name";
     if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
       return "a tolerance of '" + tolerance.name + "' is not finite";
   }

@@ -8,7 +8,7 @@ ControlLoop::ControlLoop(SimulatedRobot& robot, int steps, Update update)
     : robot_(robot), steps_(steps), update_(std::move(update)) {}
 
 StepResult ControlLoop::cycle(const ros::Time& time) {
-  // After a cycle that failed half-way less time has passed.
+  // If the last cycle failed half-way, less than a period has passed.
   const ros::Duration since_last = last_.isZero() ? ros::Duration(period()) : time - last_;
   last_ = time;
   robot_.read(time, since_last);

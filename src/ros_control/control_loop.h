@@ -1,5 +1,5 @@
 #pragma once
-/// Controllers and simulation in lock step.
+/// Runs controllers and simulation in lock step.
 
 #include <ros/duration.h>
 #include <ros/time.h>
@@ -11,30 +11,30 @@
 
 namespace flexarm::ros_control {
 
-/// A cycle reads the robot, updates its controllers, writes what they command, and makes the steps until the next one.
+/// A cycle reads the robot, updates the controllers, writes their commands, and steps the simulation to the next cycle.
 class ControlLoop {
  public:
-  /// As that of a controller_manager::ControllerManager; `restart`: controllers begin anew.
+  /// The signature of controller_manager::ControllerManager::update(); `restart`: controllers begin anew.
   using Update = std::function<void(const ros::Time& time, const ros::Duration& period, bool restart)>;
 
-  /// @param steps  of the simulation in each cycle, at least one
+  /// @param steps  of the simulation per cycle, at least one
   ControlLoop(SimulatedRobot& robot, int steps, Update update);
 
-  /// @param time  simulated, later than in the cycle before
-  /// @returns the last step, which has failed if it has not converged
+  /// @param time  simulated time, later than in the last cycle
+  /// @returns the result of the last step; if it has not converged, the cycle has failed
   StepResult cycle(const ros::Time& time);
-  /// The simulation is as at its start, and controllers begin anew with the next cycle.
+  /// Resets the simulation to its initial state; controllers begin anew with the next cycle.
   void reset();
-  /// Of simulated time [s].
+  /// Simulated time from one cycle to the next [s].
   double period() const;
-  /// That the last cycle has made.
+  /// Number of steps that the last cycle made.
   int steps_made() const { return steps_made_; }
 
  private:
   SimulatedRobot& robot_;
   int steps_, steps_made_ = 0;
   Update update_;
-  ros::Time last_;  ///< zero: there was no cycle yet
+  ros::Time last_;  ///< time of the last cycle; zero: there was none yet
   bool restart_ = false;
 };
 

@@ -1,4 +1,4 @@
-/// A node whose simulated arm is the hardware of ros_control.
+/// The node flexarm_ros_control: a simulated arm as the hardware of ros_control's controllers.
 
 #include <ros/console.h>
 #include <ros/init.h>
@@ -11,12 +11,13 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "flexarm_ros_control");
-  // As ROS does with SIGINT: otherwise the node would stay registered with the master for ever.
+  // ROS does the same for SIGINT. Without this, SIGTERM would leave the node registered with the master for ever.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
-  ros::NodeHandle keeps_ros_alive;  // beyond a failed construction: its message is to go out
+  ros::NodeHandle keeps_ros_alive;  // so that the error of a failed construction still reaches /rosout
   try {
     flexarm::ros_control::RosControlNode node;
-    // One for the controller manager's services, which wait for cycles; one for what controllers listen to.
+    // One thread for the controller manager's services, which wait for cycles, and one for the controllers'
+    // subscribers.
     ros::AsyncSpinner others(2);
     others.start();
     node.run();

@@ -12,15 +12,17 @@
 namespace flexarm::ros_control {
 namespace {
 
-/// So often, at least, it is asked whether ROS goes on [s].
+/// Longest wait before ros::ok() is checked again [s].
 constexpr double kLongestPause = 0.1;
-constexpr double kPeriodOfComplaints = 10;  ///< wall time [s]
+constexpr double kPeriodOfComplaints = 10;  ///< of warnings, wall time [s]
+
+constexpr const char* kStepsPerCycle = "steps_per_cycle";
 
 int read_steps_per_cycle(const ros::NodeHandle& private_node) {
   XmlRpc::XmlRpcValue value(1);
-  private_node.getParam("steps_per_cycle", value);
+  private_node.getParam(kStepsPerCycle, value);
   if (value.getType() == XmlRpc::XmlRpcValue::TypeInt && static_cast<int>(value) >= 1) return static_cast<int>(value);
-  throw node::ParameterError("parameters that cannot be used:\n" + private_node.resolveName("steps_per_cycle") +
+  throw node::ParameterError("parameters that cannot be used:\n" + private_node.resolveName(kStepsPerCycle) +
                              ": must be a whole number >= 1, got " + value.toXml());
 }
 
@@ -45,6 +47,7 @@ RosControlNode::RosControlNode()
             }),
       pacer_(loop_.period(), parameters_.real_time_factor, parameters_.max_catch_up) {
   run_.paused = parameters_.paused;
+  node::warn_of_unknown_parameters(private_node_, {kStepsPerCycle});
   for (const scene::Diagnostic& warning : simulation_.start_warnings()) ROS_WARN_STREAM(warning.text());
   ROS_INFO("scene '%s': %zu joint coordinates; scheme %s, step %g s, control at %g Hz%s",
            simulation_.scene().name.c_str(), simulation_.coordinate_names().size(), simulation_.scheme().c_str(),
@@ -92,7 +95,8 @@ double RosControlNode::cycle_if_due() {
   pacer_.elapse(passed);
   if (!pacer_.step_due()) return std::clamp(-pacer_.lateness(), 0.0, kLongestPause);
   if (pacer_.overruns() > run_.overruns)
-    ROS_WARN_THROTTLE(kPeriodOfComplaints, "slower than asked for: %llu cycles are dropped, simulated time lags",
+    ROS_WARN_THROTTLE(kPeriodOfComplaints,
+                      "slower than real_time_factor: %llu cycles dropped, simulated time lags behind",
                       static_cast<unsigned long long>(pacer_.overruns()));
   run_.overruns = pacer_.overruns();
   cycle();
@@ -122,7 +126,7 @@ void RosControlNode::resume() {
   run_.failure.clear();
   pacer_.clear_backlog();
   if (!has_failed) return;
-  // Who resumes after a failure is told whether a cycle works now.
+  // After a failure, the caller must learn whether a cycle succeeds this time.
   cycle();
   if (run_.failed()) throw std::runtime_error("not resumed: " + run_.failure);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A simulation that the controllers of ros_control move.
+/// A node whose simulation is moved by controllers of ros_control.
 
 #include <controller_manager/controller_manager.h>
 #include <ros/callback_queue.h>
@@ -19,26 +19,27 @@
 
 namespace flexarm::ros_control {
 
-/// Simulated time is /clock. One thread makes the cycles and serves ~pause, ~resume and ~reset between them; those of
-/// the controller manager, who waits for cycles, and of controllers are for others.
+/// Simulated time is /clock. The thread that calls run() makes the cycles, and serves ~pause, ~resume and ~reset
+/// between them. The services of the controller manager, which wait for cycles, and the callbacks of controllers need
+/// other threads.
 class RosControlNode {
  public:
   /// Reads parameters and scene.
-  /// @throws node::ParameterError, ModelError if they cannot be used.
+  /// @throws node::ParameterError, ModelError if they cannot be used
   RosControlNode();
   RosControlNode(const RosControlNode&) = delete;
   RosControlNode& operator=(const RosControlNode&) = delete;
 
-  /// Until ROS shuts down.
+  /// Makes cycles and serves the node's services until ROS shuts down.
   void run();
 
  private:
   void advertise_services();
-  /// One, if it is due. @returns how long nothing will be [s]
+  /// Makes a cycle if it is due. @returns how long to wait for the next one [s]
   double cycle_if_due();
   void cycle();
   void fail(const StepResult& result);
-  /// @throws std::runtime_error if the first cycle fails.
+  /// @throws std::runtime_error if the simulation was paused by a failure, and fails again in the next cycle
   void resume();
 
   ros::NodeHandle node_, private_node_{"~"};
@@ -51,7 +52,7 @@ class RosControlNode {
   controller_manager::ControllerManager manager_;
   ControlLoop loop_;
   node::Pacer pacer_;
-  std::chrono::steady_clock::time_point last_look_;  ///< at the wall clock
+  std::chrono::steady_clock::time_point last_look_;  ///< when the wall clock was read last
   ros::CallbackQueue own_queue_;
   std::vector<ros::ServiceServer> services_;
 };

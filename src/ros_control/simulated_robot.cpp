@@ -13,7 +13,7 @@ namespace {
 
 using Controllers = std::list<hardware_interface::ControllerInfo>;
 
-/// In the order of Joint::commands.
+/// Index into Joint::commands and kCommandInterfaces.
 enum InterfaceIndex : std::size_t { kEffort, kVelocity, kPosition, kPositionVelocity, kPositionVelocityAcceleration };
 struct CommandInterfaceRow {
   const char* name;
@@ -68,7 +68,7 @@ void SimulatedRobot::register_joint(std::size_t coordinate) {
   Joint& joint = joints_[coordinate];
   const hardware_interface::JointStateHandle state(name, &joint.position, &joint.velocity, &joint.effort);
   states_.registerHandle(state);
-  // What cannot be commanded has handles, too: prepareSwitch() can say why.
+  // Joints that cannot be commanded get handles, too, so that prepareSwitch() can say why.
   for (std::size_t i = 0; i < kInterfaces; ++i) joint.faults[i] = find_fault(coordinate, i);
   auto& commands = joint.commands;
   efforts_.registerHandle({state, &commands[kEffort].value});
@@ -94,7 +94,7 @@ void SimulatedRobot::register_sensors() {
       const bool in_world = sensor.kind == scene::SensorKind::Reaction;
       wrenches_.registerHandle({sensor.name, in_world ? scene.root_link : sensor.link, values, values + 3});
     } else {
-      hardware_interface::ImuSensorHandle::Data data;  // covariances are not known, and no orientation is measured
+      hardware_interface::ImuSensorHandle::Data data;  // covariances are unknown, and orientation is not measured
       data.name = sensor.name;
       data.frame_id = sensor.link;
       data.angular_velocity = values;
@@ -104,7 +104,7 @@ void SimulatedRobot::register_sensors() {
   }
 }
 
-// ---------------------------------------------------------------- who commands what
+// ---------------------------------------------------------------- claims of controllers
 
 std::string SimulatedRobot::find_fault(std::size_t coordinate, std::size_t interface) const {
   const ServoMode mode = kCommandInterfaces[interface].mode;
@@ -125,7 +125,7 @@ void SimulatedRobot::for_claims(const Controllers& controllers, const Act& act) 
   for (const hardware_interface::ControllerInfo& controller : controllers)
     for (const hardware_interface::InterfaceResources& claimed : controller.claimed_resources) {
       const std::optional<std::size_t> interface = command_interface_called(claimed.hardware_interface);
-      if (!interface) continue;  // of another part of a larger robot
+      if (!interface) continue;  // an interface of another part of a larger robot
       for (const std::string& name : claimed.resources)
         if (const auto place = coordinates_.find(name); place != coordinates_.end()) act(place->second, *interface);
     }
@@ -160,10 +160,10 @@ void SimulatedRobot::doSwitch(const Controllers& started, const Controllers& sto
 
 void SimulatedRobot::take_hold(std::size_t coordinate, std::size_t interface) {
   Joint& joint = joints_[coordinate];
-  if (!joint.faults[interface].empty()) return;  // prepareSwitch() has refused it
+  if (!joint.faults[interface].empty()) return;  // was refused by prepareSwitch()
   const bool has_servo = simulation_.has_servo(coordinate);
   if (has_servo) simulation_.switch_mode(coordinate, kCommandInterfaces[interface].mode);
-  // Until the controller commands something else: what there is.
+  // Hold the present set point until the controller commands another one.
   joint.commands[interface] = {has_servo ? simulation_.set_point(coordinate) : 0};
   joint.interface = interface;
 }
@@ -208,7 +208,7 @@ void SimulatedRobot::write(const ros::Time& /*time*/, const ros::Duration& /*per
       ROS_ERROR_STREAM_THROTTLE(1, "joint '" << simulation_.coordinate_names()[coordinate]
                                              << "': a controller commands " << command.value << ", rate "
                                              << command.rate << ", acceleration " << command.acceleration
-                                             << ", which are not all finite: left out");
+                                             << ", which are not all finite: ignored");
   }
 }
 

@@ -15,11 +15,11 @@ namespace {
 constexpr double kArcTolerance = 1e-6;       // relative difference of an arc's radii
 constexpr double kParallelTolerance = 1e-6;  // sine of an angle
 
-/// How far the centreline has been read; tangents are unit vectors.
+/// State of the reader at the end of the last piece of the centreline. Tangents are unit vectors.
 struct Progress {
   Vector3 position = Vector3::Zero();
-  std::optional<Vector3> first_tangent, tangent;  // none before the first piece
-  bool is_known = true;                           // after a bad piece, what follows cannot be judged
+  std::optional<Vector3> first_tangent, tangent;  // empty before the first piece
+  bool is_known = true;                           // false after a bad piece: the next one has no start
 };
 
 struct Tangents {
@@ -51,7 +51,7 @@ std::optional<Tangents> arc_tangents(const XmlElement& arc, const Vector3& from,
     arc.attribute_error("center", fmt::format("center must be equally far from both ends (now {} and {} m)",
                                               first.norm(), last.norm()));
   } else if (first.cross(last).norm() <= kParallelTolerance * radius * radius) {
-    // Both ends and the centre on one line: no length, or a half circle, whose plane is not known.
+    // Both ends and the centre lie on one line: a half circle, whose plane is undetermined, or hardly any length.
     arc.attribute_error("center", "center must not lie on the line through both ends (give a half circle as two arcs)");
   } else {
     const Vector3 axis = first.cross(last).normalized();
@@ -60,7 +60,7 @@ std::optional<Tangents> arc_tangents(const XmlElement& arc, const Vector3& from,
   return std::nullopt;
 }
 
-/// Reads <line> or <arc>, moving `progress` on; nothing if there is an error.
+/// Reads a <line> or an <arc> and moves `progress` to its end. Returns nothing if there is an error.
 std::optional<CentrelinePiece> read_piece(const XmlElement& element, Progress& progress) {
   const bool is_arc = element.tag() == "arc";
   is_arc ? element.expect_only({"to", "center", "twist"}) : element.expect_only({"to", "twist"});
@@ -86,7 +86,7 @@ std::optional<CentrelinePiece> read_piece(const XmlElement& element, Progress& p
   return piece;
 }
 
-/// `first_tangent` is set if the first piece is good.
+/// Sets `first_tangent` if the first piece has no errors.
 std::vector<CentrelinePiece> read_centreline(const XmlElement& beam, std::optional<Vector3>& first_tangent) {
   const std::optional<XmlElement> centreline = beam.child("centerline");
   if (!centreline) {
@@ -151,7 +151,8 @@ void read_hubs(const XmlElement& beam, BeamDescription& description) {
 
 constexpr std::array<const char*, 6> kStrains = {"axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"};
 
-/// Strains that are not named are not damped. False where none is.
+/// Reads damping coefficients of single strains; a strain without an attribute is not damped. Returns false if no
+/// strain has an attribute.
 bool read_damping_of_strains(const XmlElement& damping, BeamDescription& description) {
   const auto has = [&](const char* strain) { return damping.has(strain); };
   if (std::none_of(kStrains.begin(), kStrains.end(), has)) return false;
@@ -165,7 +166,8 @@ bool read_damping_of_strains(const XmlElement& damping, BeamDescription& descrip
   return true;
 }
 
-/// By its coefficients, or by the damping ratio of modes: eta w / 2 + alpha / (2 w) at circular frequency w.
+/// Reads the damping coefficients eta (stiffness-proportional) and alpha (mass-proportional), or computes them from the
+/// damping ratio of modes, which is eta w / 2 + alpha / (2 w) at the circular frequency w.
 void read_damping(const XmlElement& damping, BeamDescription& description) {
   damping.expect_only({"stiffness_proportional", "mass_proportional", "ratio", "frequency", "frequencies", "axial",
                        "shear_y", "shear_z", "torsion", "bending_y", "bending_z"});

@@ -8,7 +8,8 @@ bool may_have_play(JointKind kind) {
          kind == JointKind::Spherical;
 }
 
-/// What else a joint says that holds or moves a coordinate: with play it has those of a body that flies.
+/// Records errors for children of <joint> that act on its coordinate (mimic, friction, damping, stops). A joint with
+/// play has no such coordinate: its child moves with the six degrees of freedom of a free body.
 void refuse_what_needs_a_coordinate(const XmlElement& joint) {
   for (const char* tag : {"mimic", "friction"})
     if (const std::optional<XmlElement> child = joint.child(tag))

@@ -87,7 +87,7 @@ void read_surface(const XmlElement& gazebo, SceneDescription& scene) {
   const char* const link = gazebo.xml().Attribute("reference");
   if (!link) return;
   SurfaceHints hints;
-  // Another program's: what is no number says nothing.
+  // These values are meant for another program (Gazebo), so one that is not a number is ignored.
   const auto hint = [&](const char* tag) -> std::optional<double> {
     const std::optional<XmlElement> child = gazebo.child(tag);
     const char* const text = child ? child->xml().GetText() : nullptr;
@@ -110,8 +110,8 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
   const auto element = [&](const char* tag) { return fmt::format("<{}> of robot {}", tag, quoted(scene.name)); };
   for (const GroundDescription& ground : scene.grounds)
     if (!ground.name.empty() && !sides.insert(ground.name).second)
-      findings.error(ground.location.line, element("ground"), "its name must be that of no link and of no other ground",
-                     quoted(ground.name));
+      findings.error(ground.location.line, element("ground"),
+                     "its name must differ from those of all links and other grounds", quoted(ground.name));
   std::set<std::pair<std::string, std::string>> named;
   const auto has_line = [&](const std::string& name) {
     const auto is_it = [&](const LinkDescription& link) { return link.name == name; };
@@ -119,14 +119,14 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
     return link != scene.links.end() && link->beam && link->collisions.empty();
   };
   const auto check = [&](const ContactPair& pair, const std::string& who) {
-    if (pair.first.empty() || pair.second.empty()) return;  // which is told
+    if (pair.first.empty() || pair.second.empty()) return;  // an error about it is recorded already
     for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
       if (sides.count(side) == 0)
         findings.error(pair.location.line, who,
                        std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
     if (pair.first == pair.second && pair.first != kAllBodies && !has_line(pair.first))
-      findings.error(pair.location.line, who, "first and second must be different, but of a beam without <collision>",
-                     quoted(pair.first));
+      findings.error(pair.location.line, who,
+                     "first and second must be different, except for a beam without <collision>", quoted(pair.first));
     if (!named.insert(std::minmax(pair.first, pair.second)).second)
       findings.error(pair.location.line, who, "must be the only <contact> or <no_contact> of its pair",
                      quoted(pair.first) + " and " + quoted(pair.second));

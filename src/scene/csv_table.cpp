@@ -70,9 +70,9 @@ void CsvTable::error(const std::string& expected, const std::string& got) const 
 
 namespace {
 
-constexpr char kSeparator = '#';  // which no expression has
+constexpr char kSeparator = '#';  // occurs in no expression
 
-/// `time` and the names in "COLUMN" or "COLUMN,RATES"; nothing where it is neither.
+/// Returns "time" and the names in "COLUMN" or "COLUMN,RATES". Returns nothing if the text has another form.
 std::optional<std::vector<std::string>> column_names(const std::string& text) {
   std::vector<std::string> names = {"time", ""};
   for (const char c : text) {
@@ -85,7 +85,7 @@ std::optional<std::vector<std::string>> column_names(const std::string& text) {
   return is_complete && names.size() <= 3 ? std::optional(names) : std::nullopt;
 }
 
-/// Their places in the table; nothing where one is missing.
+/// Returns the indices of the named columns. Returns nothing if a column is missing or not unique.
 std::optional<std::vector<std::size_t>> find_columns(const CsvTable& table, const std::vector<std::string>& names) {
   const std::vector<std::string>& columns = table.columns();
   std::vector<std::size_t> places;
@@ -125,7 +125,8 @@ std::optional<TimeFunction> read_trajectory(const XmlElement& element, const cha
       const std::optional<double> number = table->number((*places)[i]);
       if (!number) return std::nullopt;
       if (i == 0 && !read[0].empty() && *number <= read[0].back()) {
-        table->error(fmt::format("time must be > {}, that of the row before", read[0].back()), fmt::to_string(*number));
+        table->error(fmt::format("time must be > {}, the time of the row before", read[0].back()),
+                     fmt::to_string(*number));
         return std::nullopt;
       }
       read[i].push_back(*number);

@@ -1,6 +1,6 @@
 #pragma once
-/// Tables of numbers that lie beside a scene. Their columns may be functions of time, as planners and measurements give
-/// them.
+/// Reads CSV files that a scene refers to: tables of numbers, whose columns may be functions of time, for example from
+/// a motion planner or a measurement.
 
 #include <fstream>
 #include <optional>
@@ -12,20 +12,23 @@
 
 namespace flexarm::scene {
 
-/// A CSV file that an element names, relative to the scene's folder: a line of names of columns, then rows of numbers.
-/// It is read row by row; what is wrong is recorded as an error of the element, with the table's own line.
+/// A CSV file that an XML element names, relative to the scene's folder. Its first line has the names of the columns,
+/// the others have numbers. The file is read row by row. Faults are recorded as errors of the element; their texts name
+/// the line of the table.
 class CsvTable {
  public:
-  /// Nothing, which is recorded, if the file cannot be read. `attribute`: names it; the element must outlive the table.
+  /// Opens the file that the element's `attribute` names. If it cannot be read, records an error and returns nothing.
+  /// The element must outlive the table.
   static std::optional<CsvTable> open(const XmlElement& element, const char* attribute, const std::string& file);
 
   const std::vector<std::string>& columns() const { return columns_; }
-  /// Goes on to the next row that is not empty; false at the end, and where it has another number of cells.
+  /// Reads the next row that is not empty. Returns false at the end of the file. Also returns false, and records an
+  /// error, if the row has another number of cells than the first line.
   bool next_row();
-  /// Of the row at hand; recorded if it is not a finite number.
+  /// Returns a number of the current row. If the cell is not a finite number, records an error and returns nothing.
   std::optional<double> number(std::size_t column) const;
 
-  /// About the line at hand. `got`: without quotes.
+  /// Records an error about the current line. `got`: without quotes.
   void error(const std::string& expected, const std::string& got = "") const;
   bool has_failed() const { return has_failed_; }
 
@@ -41,11 +44,12 @@ class CsvTable {
   mutable bool has_failed_ = false;
 };
 
-/// Whether the value of an attribute means a column of a table, not a formula.
+/// Whether the value of an attribute names a column of a table ("FILE#COLUMN"), and is not a formula.
 bool names_column(const std::string& value);
 
-/// Reads "FILE#COLUMN" or "FILE#COLUMN,RATES": a smooth function through a column of a CSV file over its column `time`
-/// [s], which at these times has the rates of the other one. Nothing if there is an error, which is recorded.
+/// Reads "FILE#COLUMN" or "FILE#COLUMN,RATES": a spline through the values in COLUMN of a CSV file over its column
+/// `time` [s]. If RATES is given, the time derivative of the spline takes the values of that column. If there is an
+/// error, records it and returns nothing.
 std::optional<TimeFunction> read_trajectory(const XmlElement& element, const char* attribute, const std::string& value);
 
 }  // namespace flexarm::scene

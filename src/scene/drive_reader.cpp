@@ -12,17 +12,28 @@
 namespace flexarm::scene {
 namespace {
 
-/// Its square is the rotor's share of the joint's inertia.
+/// The gear ratio. The rotor adds its inertia times the square of this to the joint's inertia, hence the upper bound.
 constexpr NumberRange kGear{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
 constexpr NumberRange kEfficiency{"> 0 and at most 1", [](double x) { return x > 0 && x <= 1; }};
 
-/// Ratios that are written with less digits are the same.
+/// Relative difference up to which two gear ratios count as equal: files may give them with few digits.
 constexpr double kSameRatio = 1e-6;
 
-/// What may not be left out where something else is given.
+/// The name of the coordinate on which an element acts: its `joint`, or the <cylinder> or <winch> whose child it is.
+std::string coordinate_of(const XmlElement& element) {
+  const tinyxml2::XMLElement* parent = element.xml().Parent() ? element.xml().Parent()->ToElement() : nullptr;
+  const std::string_view tag = parent ? parent->Name() : "";
+  if (tag != "cylinder" && tag != "winch") return element.text("joint").value_or("");
+  if (element.has("joint"))
+    element.attribute_error("joint", "it acts on its <" + std::string(tag) + ">; leave this out");
+  const char* name = parent->Attribute("name");
+  return name ? name : "";
+}
+
+/// Records errors for attributes that contradict each other, and for attributes without others that they require.
 void check_conditions(const XmlElement& drive, const DriveDescription& description) {
   if (drive.has("damping") && drive.has("damping_ratio"))
-    drive.attribute_error("damping_ratio", "damping is given already; leave one of both out");
+    drive.attribute_error("damping_ratio", "damping is given already; leave out one of the two");
   for (const char* attribute : {"damping", "damping_ratio", "backlash"})
     if (drive.has(attribute) && !drive.has("stiffness"))
       drive.attribute_error(attribute, "a rigid gear has none; give its stiffness > 0, or leave this out");
@@ -32,7 +43,8 @@ void check_conditions(const XmlElement& drive, const DriveDescription& descripti
     drive.attribute_error("velocity_limit", "the line from rest to the no-load speed begins at effort_limit: give it");
   if (!drive.has("stiffness") && description.efficiency <= 0.5)
     drive.attribute_error("efficiency",
-                          "a gear of at most 0.5 holds whatever its load; give it a stiffness, or more than 0.5");
+                          "a rigid gear with an efficiency of at most 0.5 is self-locking under any load; give it a "
+                          "stiffness, or an efficiency above 0.5");
 }
 
 constexpr Choice<ServoDescription::Mode> kModes[] = {{"effort", ServoDescription::Mode::Effort},
@@ -41,7 +53,7 @@ constexpr Choice<ServoDescription::Mode> kModes[] = {{"effort", ServoDescription
 constexpr Choice<ServoDescription::Side> kSides[] = {{"motor", ServoDescription::Side::Motor},
                                                      {"link", ServoDescription::Side::Link}};
 
-/// Which gains go with a mode, and what only goes with another attribute.
+/// Records errors for gains that the mode does not use, and for attributes without others that they require.
 void check_gains(const XmlElement& servo, ServoDescription::Mode mode) {
   const auto refuse = [&](const char* attribute, const char* why) {
     if (servo.has(attribute)) servo.attribute_error(attribute, why);
@@ -62,7 +74,7 @@ void check_gains(const XmlElement& servo, ServoDescription::Mode mode) {
   }
 }
 
-/// Children of this name.
+/// Returns the children with this tag.
 std::vector<XmlElement> children(const XmlElement& element, const char* tag) {
   std::vector<XmlElement> out;
   for (const XmlElement& child : element.children())
@@ -70,7 +82,7 @@ std::vector<XmlElement> children(const XmlElement& element, const char* tag) {
   return out;
 }
 
-/// `mode`: that of the servo.
+/// Reads the children <gains>: the gains of modes other than `mode`, the servo's own.
 std::vector<ServoDescription::Gains> read_other_modes(const XmlElement& servo, ServoDescription::Mode mode) {
   std::vector<ServoDescription::Gains> out;
   for (const XmlElement& gains : children(servo, "gains")) {
@@ -95,7 +107,7 @@ std::vector<ServoDescription::Gains> read_other_modes(const XmlElement& servo, S
 
 SpringDescription read_spring(const XmlElement& spring) {
   spring.expect_only({"joint", "stiffness", "rest", "damping_ratio"});
-  return {spring.text("joint").value_or(""), spring.number("stiffness", kNonNegative).value_or(0),
+  return {coordinate_of(spring), spring.number("stiffness", kNonNegative).value_or(0),
           spring.number("rest", kAnyNumber, 0), spring.location(), spring.number("damping_ratio", kNonNegative, 0)};
 }
 
@@ -104,7 +116,7 @@ DriveDescription read_drive(const XmlElement& drive) {
                      "efficiency", "effort_limit", "velocity_limit", "axis"});
   DriveDescription out;
   out.location = drive.location();
-  out.coordinate = drive.text("joint").value_or("");
+  out.coordinate = coordinate_of(drive);
   if (drive.has("gear")) out.gear = drive.number("gear", kGear);
   out.rotor_inertia = drive.number("rotor_inertia", kNonNegative, 0);
   if (drive.has("stiffness")) out.stiffness = drive.number("stiffness", kPositive);
@@ -126,7 +138,7 @@ ServoDescription read_servo(const XmlElement& servo) {
                     {"gains"});
   ServoDescription out;
   out.location = servo.location();
-  out.coordinate = servo.text("joint").value_or("");
+  out.coordinate = coordinate_of(servo);
   const std::optional<ServoDescription::Mode> mode = read_choice(servo, "mode", kModes);
   out.mode = mode.value_or(out.mode);
   out.kp = servo.number("kp", kNonNegative, 0);
@@ -172,18 +184,18 @@ void settle_gears(const std::vector<Transmission>& transmissions, std::vector<Dr
     const std::optional<double> reduction = parse_number(next_word(text));
     if (!reduction || *reduction == 0 || !next_word(text).empty()) {
       findings.error(transmission.line, "<mechanicalReduction> of the transmission of " + quoted(drive.coordinate),
-                     "a number different from 0 is expected, since a <drive> is behind it",
+                     "a number different from 0 is expected, since the joint has a <drive>",
                      quoted(transmission.reduction));
       continue;
     }
-    const double ratio = std::abs(*reduction);  // its sign says which way the motor turns
+    const double ratio = std::abs(*reduction);  // the sign is only the motor's sense of rotation
     if (!drive.gear) drive.gear = ratio;
     if (std::abs(*drive.gear - ratio) <= kSameRatio * ratio) continue;
     if (odd.empty()) line = drive.location.line;
     odd.push_back(
         fmt::format("{} ({}, line {} has {})", quoted(drive.coordinate), *drive.gear, transmission.line, ratio));
   }
-  // One for all of them: most exporters write a reduction of 1 for every joint.
+  // One warning for all joints: most exporters write a reduction of 1 for every joint.
   if (!odd.empty())
     findings.warning(line, "<drive> of robot",
                      fmt::format("gear counts, not the <mechanicalReduction> of the joint's <transmission>: {}",

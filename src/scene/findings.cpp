@@ -7,7 +7,7 @@
 namespace flexarm::scene {
 namespace {
 
-/// A finding is one line, whatever the input contains.
+/// Replaces control characters by blanks, so that a finding stays on one line whatever the input contains.
 std::string without_control_characters(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
@@ -18,7 +18,7 @@ std::string without_control_characters(std::string text) {
 
 std::string quoted(std::string_view value) {
   std::size_t shown = std::min(value.size(), kLongestShownValue);
-  // Not in the middle of a UTF-8 sequence.
+  // Do not cut in the middle of a UTF-8 sequence.
   while (shown < value.size() && shown > 0 && (static_cast<unsigned char>(value[shown]) & 0xC0) == 0x80) --shown;
   return "'" + std::string(value.substr(0, shown)) + (shown < value.size() ? "...'" : "'");
 }
@@ -48,7 +48,7 @@ std::string Findings::origin(const tinyxml2::XMLAttribute& attribute) const {
 }
 
 void Findings::add(Diagnostic finding) {
-  // The first error is always listed, however many warnings came before.
+  // The first error is always listed, even if warnings have used up the list.
   const bool first_error = finding.severity == Diagnostic::Severity::Error && error_count_ == 1;
   if (findings_.size() < kMostFindings || first_error) {
     findings_.push_back(std::move(finding));
@@ -68,7 +68,7 @@ Diagnostics Findings::take() {
   return std::move(findings_);
 }
 
-// ---------------------------------------------------------------- as users see them
+// ---------------------------------------------------------------- as text for users
 
 std::string Diagnostic::text() const {
   std::string text = file;

@@ -1,5 +1,5 @@
 #pragma once
-/// Collects what is wrong with one input.
+/// Collects the errors and warnings about one input file.
 
 #include <map>
 #include <string>
@@ -11,27 +11,28 @@
 
 namespace flexarm::scene {
 
-/// The value in quotes as messages show it: shortened.
+/// Returns the value in quotes, shortened for a message (kLongestShownValue).
 std::string quoted(std::string_view value);
 
 class Findings {
  public:
   explicit Findings(std::string file) : file_(std::move(file)) {}
 
-  /// `got` in quotes (see quoted()); empty where something is missing.
+  /// Records an error. `expected`: what the input should be; `got`: what it is, in quotes (see quoted()), or empty if
+  /// something is missing.
   void error(int line, std::string element, std::string expected, std::string got = "");
   void warning(int line, std::string element, std::string expected, std::string got = "");
 
-  /// Where an attribute's value has come from, if it is not what the file says (" of '${a + 1}' with a = 2").
+  /// Stores the origin of an attribute's value that an expression has replaced (" of '${a + 1}' with a = 2").
   void note_origin(const tinyxml2::XMLAttribute& attribute, std::string origin);
-  /// The attribute's value in quotes, with its origin.
+  /// Returns the attribute's value in quotes, followed by its origin.
   std::string got(const tinyxml2::XMLAttribute& attribute) const;
-  /// Empty: the file itself.
+  /// Returns the origin of the attribute's value; empty if the file gives the value itself.
   std::string origin(const tinyxml2::XMLAttribute& attribute) const;
 
   const std::string& file() const { return file_; }
   std::size_t error_count() const { return error_count_; }
-  /// All findings in the order of their lines.
+  /// Returns all findings, sorted by line, and leaves none here.
   Diagnostics take();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// The elements of a scene that act between points of links.
+/// Lists the kinds of XML elements of a scene that describe forces between points of links.
 
 #include <functional>
 #include <memory>
@@ -12,14 +12,14 @@ namespace flexarm::scene {
 
 class XmlElement;
 
-/// A kind of force element: the children of <robot> that it is read from, and how.
+/// A kind of force element: which children of <robot> describe it, and the function that reads them.
 struct ForceElementKind {
   std::string tag;
-  std::string attribute;  ///< without which a child of that tag is something else; empty: all are
+  std::string attribute;  ///< a child with `tag` is of this kind only if it has this attribute; empty: always
   std::function<std::shared_ptr<const ForceElementDescription>(const XmlElement&)> read;
 };
 
-/// Those that every scene may have.
+/// Returns the kinds that every scene may have.
 const std::vector<ForceElementKind>& force_element_kinds();
 
 }  // namespace flexarm::scene

@@ -10,16 +10,16 @@
 namespace flexarm::scene {
 namespace {
 
-/// Principal moments below the round-off of their sum are not judged.
+/// Relative to the largest principal moment: smaller violations count as round-off.
 constexpr double kRoundOff = 1e-9;
-/// Radius of gyration below which a body of this mass is a point: what exporters leave of a zero. [m]
+/// Radius of gyration below which a body counts as a point mass: some exporters write such small numbers for zero. [m]
 constexpr double kSmallestRadius = 1e-6;
 
 double round_off(const Vector3& moments) {
   return kRoundOff * moments.cwiseAbs().maxCoeff();
 }
 
-/// Mass, first moment and inertia about the origin of a frame.
+/// Mass, first moment of mass and inertia of several bodies about the origin of a frame.
 struct Composite {
   double mass = 0;
   Vector3 moment = Vector3::Zero();
@@ -32,7 +32,7 @@ struct Composite {
     moment += body.mass * center;
     inertia += rotation * body.inertia * rotation.transpose() + body.mass * steiner(center);
   }
-  /// Nothing moves with negative kinetic energy.
+  /// Whether the inertia about the centre of mass is positive semidefinite, so that no kinetic energy is negative.
   bool can_be() const {
     const Matrix3 about_center = mass > 0 ? Matrix3(inertia - steiner(moment / mass) * mass) : inertia;
     const Vector3 moments = principal_moments(about_center);
@@ -41,7 +41,7 @@ struct Composite {
   static Matrix3 steiner(const Vector3& d) { return d.squaredNorm() * Matrix3::Identity() - d * d.transpose(); }
 };
 
-/// Links that move as one body, and what they weigh together.
+/// Groups of links that fixed joints connect to one rigid body, and the inertia of each group.
 class RigidGroups {
  public:
   explicit RigidGroups(const SceneDescription& scene) {
@@ -57,10 +57,11 @@ class RigidGroups {
  private:
   struct Visit {
     std::string link, carrier;
-    Pose pose;  // in the carrier
+    Pose pose;  // of the link in the frame of its carrier
   };
 
-  /// From here to the leaves. In a bad tree, whose errors are recorded already, every link is visited once, too.
+  /// Walks the tree from `root` to its leaves. Every link is visited once, also if the tree is faulty (such errors are
+  /// recorded elsewhere).
   void collect(const Visit& root) {
     std::vector<Visit> stack = {root};
     while (!stack.empty()) {
@@ -81,7 +82,7 @@ class RigidGroups {
 
   std::map<std::string, const LinkDescription*> links_;
   std::map<std::string, std::vector<const JointDescription*>> below_;
-  std::map<std::string, std::string> carriers_;  // of each link: the innermost one that it is fixed to
+  std::map<std::string, std::string> carriers_;  // by link: the link nearest to the root in the same group
   std::map<std::string, Composite> composites_;  // by carrier
 };
 
@@ -104,8 +105,8 @@ void check_inertias(const SceneDescription& scene, Findings& findings) {
                                (groups.carrier(link.name) == scene.root_link || groups.composite(link.name).can_be());
       if (is_harmless) {
         findings.warning(line, element,
-                         "principal moments of inertia must be >= 0 (harmless here: nothing moves with this one alone, "
-                         "or it is negligible)",
+                         "principal moments of inertia must be >= 0 (harmless here: this inertia never acts alone, or "
+                         "it is negligible)",
                          got);
       } else {
         findings.error(line, element, "principal moments of inertia must be >= 0", got);

@@ -10,7 +10,8 @@ namespace flexarm::scene {
 
 namespace {
 
-/// A travel of a rack or cam has no part along the axis, about which the joint turns. On a slide it is along the line.
+/// Reads the direction of the travel of a rack or cam, which must be normal to the axis of rotation. On a slide, the
+/// travel is along the line, and a direction is an error.
 void read_normal_direction(const XmlElement& couple, JointDescription& description) {
   if (description.slide) {
     if (couple.has("direction")) couple.attribute_error("direction", "on a slide the travel is along the line");
@@ -111,7 +112,8 @@ constexpr Choice<SlideDescription::End> kEnds[] = {{"stop", SlideDescription::En
                                                    {"free", SlideDescription::End::Free}};
 constexpr Choice<bool> kLines[] = {{"elements", false}, {"smooth", true}};
 
-/// What turns on the section: one of the rotations, or a joint whose travel is that along the line.
+/// Reads how the slider rotates relative to the beam's section: by one of the kinds of rotation, or by a <couple>,
+/// whose travel is the one along the line.
 JointKind read_rotation(const XmlElement& joint, const XmlElement& slide, JointDescription& description) {
   const JointKind rotation = read_choice(slide, "rotation", kRotations, JointKind::Spherical);
   if (const std::optional<XmlElement> couple = slide.child("couple")) {
@@ -187,9 +189,10 @@ void read_friction(const XmlElement& friction, JointDescription& description) {
   out.coefficient = friction.number("coefficient", kNonNegative, 0);
   out.radius = friction.has("radius") ? friction.number("radius", kPositive).value_or(0) : 0;
   if (friction.has("coefficient") && !has_normal_force(description.kind))
-    friction.attribute_error("coefficient",
-                             "fixed, floating, spherical and planar joints have no force that presses; leave this out, "
-                             "and give a constant effort, <dynamics friction>");
+    friction.attribute_error(
+        "coefficient",
+        "fixed, floating, spherical and planar joints have no normal force on which friction could depend; leave "
+        "this out, and give a constant friction effort, <dynamics friction>");
   else
     check_radius(friction, out.coefficient, radius_of(description));
   description.friction_law = out;

@@ -10,17 +10,20 @@
 namespace flexarm::scene {
 namespace {
 
-/// Of a follower's range, by which its master's may go beyond it without a word: stops give way by more.
+/// Share of a follower's range by which its master's limits may let it go beyond this range without a warning. Elastic
+/// stops give way by more.
 constexpr double kRounded = 0.01;
 
-/// position = offset + multiplier * that of `master`, which mimics none.
+/// A joint that mimics another one, directly or through a chain: position = offset + multiplier * position of `master`.
+/// The master is the end of the chain: it mimics no joint.
 struct Follower {
   const JointDescription* joint;
   const JointDescription* master;
   double multiplier, offset;
 };
 
-/// In the order of the joints; without those whose chain leads nowhere or round in a ring.
+/// Returns the followers in the order of the joints. Leaves out those whose chain ends at an unknown joint or is a
+/// ring.
 std::vector<Follower> followers_of(const std::vector<JointDescription>& joints) {
   std::map<std::string, const JointDescription*> named;
   for (const JointDescription& joint : joints) named.emplace(joint.name, &joint);
@@ -41,7 +44,8 @@ std::vector<Follower> followers_of(const std::vector<JointDescription>& joints) 
   return followers;
 }
 
-/// Records limits that the master's do not keep. A joint without limits goes anywhere.
+/// Warns about a follower whose own limits the motion of its master may exceed. A master without limits may go
+/// anywhere.
 void check_range(const Follower& follower, Findings& findings) {
   const std::optional<JointLimits>& own = follower.joint->limits;
   const std::optional<JointLimits>& limits = follower.master->limits;

@@ -24,7 +24,7 @@ bool continues_word(char c) {
   return is_letter(c) || (c >= '0' && c <= '9');
 }
 
-/// The identifiers of an expression, each once. The exponent of a number is none.
+/// Returns the identifiers of an expression, each once. The "e" of a number such as 1e3 is not an identifier.
 std::vector<std::string> identifiers(std::string_view text) {
   std::vector<std::string> found;
   std::set<std::string> seen;
@@ -68,7 +68,7 @@ std::variant<double, ExpressionFault> ParameterTable::evaluate(const std::string
   const std::string shown = quoted("${" + expression + "}") + values_in(expression);
   if (const std::string unknown = unknown_in(expression); !unknown.empty()) {
     const std::string parameters = is_empty() ? "" : " (" + names() + ")";
-    return ExpressionFault{quoted(unknown) + " is no parameter of the scene" + parameters + ", no function, nor pi",
+    return ExpressionFault{quoted(unknown) + " is not a parameter of the scene" + parameters + ", no function, nor pi",
                            shown};
   }
   double value = 0;

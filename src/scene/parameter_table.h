@@ -1,5 +1,5 @@
 #pragma once
-/// Parameters of a scene by their names, and numbers that are made of them.
+/// Named parameters of a scene, and the evaluation of expressions that contain them.
 
 #include <map>
 #include <string>
@@ -11,29 +11,31 @@
 
 namespace flexarm::scene {
 
-/// Why an expression has no finite value, as two parts of a finding.
+/// Why an expression has no finite value, as the texts `expected` and `got` of a Diagnostic.
 struct ExpressionFault {
   std::string expected, got;
 };
 
-/// Numbers that expressions may name.
+/// Named numbers that may occur in expressions.
 class ParameterTable {
  public:
   ParameterTable();
 
-  /// Whether expressions know the name: a parameter's, a constant's or a function's.
+  /// Whether the name may occur in expressions, as a parameter, a constant or a function.
   bool knows(const std::string& name) const;
   bool has(const std::string& name) const { return values_.count(name) > 0; }
   bool is_empty() const { return values_.empty(); }
   /// `name` must be an identifier and not known yet.
   void add(const std::string& name, double value);
-  /// "length, payload", in the order in which they were added; shortened where there are many.
+  /// Returns the parameters' names as "length, payload", in the order in which they were added; shortened if they are
+  /// many.
   std::string names() const { return joined(names_); }
 
   std::variant<double, ExpressionFault> evaluate(const std::string& expression);
-  /// The first name in an expression that is not known; empty if all are.
+  /// Returns the first unknown name in an expression, or an empty text if all names are known.
   std::string unknown_in(std::string_view expression) const;
-  /// " with length = 2, payload = 120": those that occur in an expression; empty where none does.
+  /// Returns the parameters that occur in an expression, with their values, as " with length = 2, payload = 120". Empty
+  /// if there are none.
   std::string values_in(std::string_view expression) const;
 
  private:
@@ -44,7 +46,7 @@ class ParameterTable {
   std::map<std::string, double> values_;
 };
 
-/// A letter or '_', then letters, digits and '_'.
+/// Whether the name is a letter or '_', followed by letters, digits and '_'.
 bool is_identifier(std::string_view name);
 
 }  // namespace flexarm::scene

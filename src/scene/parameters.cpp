@@ -17,17 +17,11 @@
 namespace flexarm::scene {
 namespace {
 
-/// That has the same bits. fmt 6 writes 2 as "2.0", which is no whole number for who reads it.
-std::string shortest_number(double value) {
-  const std::string text = fmt::format("{}", value);
-  const bool is_whole = text.size() > 2 && text.compare(text.size() - 2, 2, ".0") == 0;
-  return is_whole ? text.substr(0, text.size() - 2) : text;
-}
-
 constexpr std::string_view kOpen = "${";
-constexpr const char* kForeign[] = {"gazebo", "transmission"};  // of other programs, with expressions of their own
+/// Elements for other programs, which may have expressions of their own.
+constexpr const char* kForeign[] = {"gazebo", "transmission"};
 
-/// "from 0 to 300", "at least 0", "at most 300".
+/// Returns "from 0 to 300", "at least 0" or "at most 300". The parameter must have a bound.
 std::string range_text(const ParameterDescription& parameter) {
   if (!parameter.min) return fmt::format("at most {}", *parameter.max);
   return parameter.max ? fmt::format("from {} to {}", *parameter.min, *parameter.max)
@@ -38,7 +32,7 @@ bool is_in_range(const ParameterDescription& parameter) {
   return (!parameter.min || parameter.value >= *parameter.min) && (!parameter.max || parameter.value <= *parameter.max);
 }
 
-/// An element that is changed, and what findings call it.
+/// An element whose attributes can be changed, and its XmlElement, which reads it and records findings about it.
 struct WritableElement {
   tinyxml2::XMLElement& xml;
   XmlElement element;
@@ -54,27 +48,29 @@ std::vector<WritableElement> children(const WritableElement& target) {
   return children;
 }
 
+/// Reads the parameters of a scene, then replaces expressions by numbers.
 class Expansion {
  public:
   Expansion(const ParameterValues& given, Findings& findings) : given_(given), findings_(findings) {}
 
   void declare(const WritableElement& target);
   void expand(const WritableElement& target);
-  /// Records the names of given values that the scene does not have.
+  /// Records an error for each given value without a parameter of that name.
   void check_given() const;
 
   std::vector<ParameterDescription> take() { return std::move(parameters_); }
 
  private:
-  /// False: an expression has no value, which is told somewhere.
+  /// Expands all attributes but the one named `but`. Returns false if an expression has no value; an error about it is
+  /// recorded.
   bool expand_attributes(const WritableElement& target, std::string_view but = "");
   bool expand_attribute(const WritableElement& target, const tinyxml2::XMLAttribute& attribute);
-  /// The text with numbers in the place of expressions, which are added to `expressions`; nothing where one has no
-  /// value.
+  /// Returns the text with its expressions replaced by numbers, and appends the expressions to `expressions`. Returns
+  /// nothing if one has no value.
   std::optional<std::string> replaced(const XmlElement& element, int line, std::string_view text,
                                       std::string& expressions);
   std::optional<double> evaluate(const XmlElement& element, int line, const std::string& expression);
-  /// Nothing where it has an error.
+  /// Reads a <parameter>. Returns nothing if it has an error.
   std::optional<ParameterDescription> read(const WritableElement& target);
   bool is_good_name(const XmlElement& parameter, const std::string& name);
   void settle_value(const XmlElement& element, ParameterDescription& parameter) const;
@@ -83,10 +79,10 @@ class Expansion {
   Findings& findings_;
   ParameterTable table_;
   std::vector<ParameterDescription> parameters_;
-  std::map<std::string, int> lines_;  // of names
+  std::map<std::string, int> lines_;  // by name: the line that declares it
   std::set<std::string> broken_;      // names of parameters with errors
   std::size_t expression_count_ = 0;
-  bool is_given_up_ = false;  // what would be said of further expressions has been said
+  bool is_given_up_ = false;  // an error that concerns all further expressions is recorded
 };
 
 // ---------------------------------------------------------------- expressions
@@ -98,7 +94,7 @@ std::optional<double> Expansion::evaluate(const XmlElement& element, int line, c
     return std::nullopt;
   }
   const std::string unknown = table_.unknown_in(expression);
-  if (broken_.count(unknown) > 0) return std::nullopt;  // its own error has been told
+  if (broken_.count(unknown) > 0) return std::nullopt;  // an error about this parameter is recorded already
   if (!unknown.empty() && lines_.empty()) {
     refuse_property(element, line, unknown, "${" + expression + "}");
     is_given_up_ = true;
@@ -130,7 +126,7 @@ std::optional<std::string> Expansion::replaced(const XmlElement& element, int li
     const std::optional<double> value = evaluate(element, line, expression);
     if (!value) return std::nullopt;
     out += text.substr(0, open);
-    out += shortest_number(*value);
+    out += fmt::format("{}", *value);  // the shortest number that has the same bits
     expressions += expression + ' ';
     text.remove_prefix(end + 1);
   }
@@ -194,9 +190,9 @@ void Expansion::settle_value(const XmlElement& element, ParameterDescription& pa
   }
   parameter.value = given->second;
   if (!std::isfinite(parameter.value) || !is_in_range(parameter))
-    element.error("the value that it is given must be " +
-                      (parameter.min || parameter.max ? range_text(parameter) : "a finite number"),
-                  fmt::format("'{}'", parameter.value));
+    element.error(
+        "the value that is set must be " + (parameter.min || parameter.max ? range_text(parameter) : "a finite number"),
+        fmt::format("'{}'", parameter.value));
 }
 
 std::optional<ParameterDescription> Expansion::read(const WritableElement& target) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Parameters of a scene, and the expressions of them in its attributes.
+/// Reads the parameters of a scene, and evaluates the expressions in its attributes.
 
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace flexarm::scene {
 
-/// Reads the <parameter>s of <robot>, `given` values being in the place of the file's, and replaces every
-/// "${expression}" in an attribute by its number: whoever reads the document then, finds no expressions, and lines as
-/// they were. What is wrong is recorded; then expressions are left.
+/// Reads the <parameter>s of <robot>; values in `given` override those of the file. Then replaces every "${expression}"
+/// in an attribute of the document by its value; line numbers do not change. Errors are recorded. If a <parameter> or a
+/// given value has an error, the expressions are left as they are.
 /// @returns the parameters in the order of the file
 std::vector<ParameterDescription> expand_parameters(tinyxml2::XMLElement& robot, const ParameterValues& given,
                                                     Findings& findings);

@@ -12,8 +12,9 @@ std::vector<double> PointSpring::numbers() const {
   return numbers;
 }
 
-std::shared_ptr<const ForceElement> PointSpring::place(const std::vector<NodePoint>& places,
-                                                       const std::vector<Vector3>& positions) const {
+std::shared_ptr<const ForceElement> PointSpring::place(const ForcePlacement& placement) const {
+  const std::vector<NodePoint>& places = placement.places;
+  const std::vector<Vector3>& positions = placement.positions;
   const double length = (positions[1] - positions[0]).norm();
   return std::make_shared<flexarm::PointSpring>(
       name, places[0], places[1], flexarm::PointSpring::Law{stiffness, rest_length.value_or(length), damping});

@@ -1,73 +1,103 @@
 #pragma once
-/// Readers of single elements of a scene; what is wrong is recorded. Those of <link> and <joint> are in
-/// standard_reader.h, those of what acts between points in force_element_kinds.h.
+/// Readers of single XML elements of a scene. They record errors in the element's Findings. The readers of <link> and
+/// <joint> are in standard_reader.h, those of forces between points of links in force_element_kinds.h.
+
+#include <set>
+#include <string>
+#include <vector>
 
 #include "scene/start.h"
 #include "scene/xml_element.h"
 
 namespace flexarm::scene {
 
-// ---------------------------------------------------------------- of <link>
+// ---------------------------------------------------------------- children of <link>
 
-/// Reads <beam>; nothing if there is an error.
+/// Reads <beam>. Returns nothing if there is an error.
 std::optional<BeamDescription> read_beam(const XmlElement& beam, const std::string& link);
 
-// ---------------------------------------------------------------- of <joint>
+// ---------------------------------------------------------------- children of <joint>
 
-/// Reads <couple>, which lets the travel depend on the angle: kind and data of the joint. Its axis, and that it is a
-/// slide, must have been read.
+/// Reads <couple>, which makes the travel of a joint a function of its angle. Sets the joint's kind and data. The axis
+/// and <slide> must have been read before.
 void read_couple(const XmlElement& joint, const XmlElement& couple, JointDescription& description);
 
-/// Reads <slide> of a joint that rides on its parent's flexible centreline: kind and data of the joint, all but its
-/// axes.
+/// Reads <slide> of a joint that moves along its parent's flexible centreline. Sets the joint's kind and data, except
+/// its axes.
 void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescription& description);
 
-/// Reads <friction> into `description`, whose kind is known.
+/// Reads <friction> into `description`, whose kind must be set.
 void read_friction(const XmlElement& friction, JointDescription& description);
 
-/// Reads <clearance> of a joint that has been read as if it had no play.
+/// Reads <clearance>. `description`: the joint, read as if it had no play.
 ClearanceDescription read_clearance(const XmlElement& clearance, const XmlElement& joint,
                                     const JointDescription& description);
-/// Makes a joint with play what it is in the tree: a floating one.
+/// Turns a joint with play into a floating joint, which represents it in the tree of joints.
 void free_play(JointDescription& joint);
 
-// ---------------------------------------------------------------- of <robot>
+// ---------------------------------------------------------------- children of <robot>
+
+/// A cylinder, and the joint between its barrel and its rod.
+struct ReadCylinder {
+  CylinderDescription cylinder;
+  JointDescription travel;
+};
+/// Reads <cylinder> without its children <spring>, <drive> and <servo>. The name and the location are set even if there
+/// are errors.
+ReadCylinder read_cylinder(const XmlElement& cylinder);
+/// Adds cylinders and their parts to the scene, whose other links and joints must be complete. Names of cylinders with
+/// errors, and those of their parts, are added to `unreadable`.
+void add_cylinders(const std::vector<ReadCylinder>& cylinders, SceneDescription& scene,
+                   std::set<std::string>& unreadable, Findings& findings);
 
 SpringDescription read_spring(const XmlElement& spring);
 DriveDescription read_drive(const XmlElement& drive);
 ServoDescription read_servo(const XmlElement& servo);
 
-/// The reduction between one motor and one joint.
+/// A URDF <transmission> between one motor and one joint.
 struct Transmission {
   std::string joint;
-  std::string reduction;  ///< as it is written
+  std::string reduction;  ///< text of <mechanicalReduction>
   int line = 0;
 };
-/// Nothing where it has no <mechanicalReduction>, or couples several joints or motors.
+/// Reads <transmission>. Returns nothing if it has no <mechanicalReduction>, or several joints or motors.
 std::optional<Transmission> read_transmission(const XmlElement& transmission);
 
-/// Drives without a gear take that of their joint's transmission; one warning names those with another one.
+/// Gives drives without a gear ratio the reduction of their joint's transmission. One warning lists all drives whose
+/// own ratio differs from that reduction.
 void settle_gears(const std::vector<Transmission>& transmissions, std::vector<DriveDescription>& drives,
                   Findings& findings);
+
+/// A winch, whose coordinate is the travel of a reel without inertia.
+struct ReadWinch {
+  JointDescription travel;  ///< without its links
+  std::string tendon;
+};
+/// Reads <winch> without its children <spring>, <drive> and <servo>.
+ReadWinch read_winch(const XmlElement& winch);
+/// Adds for each winch a joint on the scene's root link, which must be settled, that carries a reel, the link
+/// NAME_reel, and lets that pay out the winch's tendon. The scene's other links, joints and tendons must be complete.
+void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene, Findings& findings);
 
 Sensor read_sensor(const XmlElement& sensor);
 
 GroundDescription read_ground(const XmlElement& ground);
-/// Whether a <contact> of <robot> is ours: others' have no sides.
+/// Whether a child of <robot> is flexarm's <contact>. A <contact> of other programs has neither `first` nor `second`.
 bool is_contact(const XmlElement& element);
 ContactDescription read_contact(const XmlElement& contact);
 ContactPair read_no_contact(const XmlElement& pair);
-/// Pairs that an SRDF beside the scene disables, of <no_contact srdf="">.
+/// Reads <no_contact srdf="">: returns the pairs of links whose collisions that SRDF file disables.
 std::vector<ContactPair> read_srdf(const XmlElement& no_contact);
-/// What <gazebo reference=""> says of a link's surface, if anything.
+/// Reads friction and contact stiffness of a link from <gazebo reference="">, if it has any.
 void read_surface(const XmlElement& gazebo, SceneDescription& scene);
-/// Checks that names of contacts refer to something, and that no pair is named twice.
+/// Checks that contacts name links or grounds of the scene, and that no pair is named twice.
 void check_contacts(const SceneDescription& scene, Findings& findings);
-/// Adds those pairs of SRDFs that the scene has links for, and says nothing of.
+/// Adds pairs from SRDF files to the scene's <no_contact>s. Skips pairs with links that the scene lacks, and pairs for
+/// which the scene has a <contact> or <no_contact>.
 void add_disabled_pairs(const std::vector<ContactPair>& pairs, SceneDescription& scene);
 
-/// Reads <simulation> into `scene`, and what it says about the start into `start`, which is settled later. So are
-/// names.
+/// Reads <simulation> into `scene`, and the initial state that it asks for into `start` (see start.h). Names are
+/// not checked here (see check_references()).
 void read_simulation(const XmlElement& simulation, SceneDescription& scene, StartRequest& start);
 
 }  // namespace flexarm::scene

@@ -11,10 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Deepest folder of a package below one of ROS_PACKAGE_PATH.
+/// How many levels below a folder of ROS_PACKAGE_PATH packages are searched.
 constexpr int kMostLevels = 4;
 
-/// A folder of that name with a package.xml in it, as rospack looks for packages: not in packages or hidden folders.
+/// Searches for a folder of that name with a package.xml. Like rospack, does not search inside packages and hidden
+/// folders.
 std::optional<fs::path> package_below(const fs::path& folder, const std::string& package, int levels) {
   std::error_code ignored;
   if (fs::exists(folder / "package.xml", ignored))
@@ -33,7 +34,7 @@ std::optional<fs::path> package_folder(const std::string& package, const fs::pat
   for (std::string path; std::getline(list, path, ':');)
     if (!path.empty())
       if (auto found = package_below(path, package, kMostLevels)) return found;
-  // A robot's description lies beside its meshes, whether ROS knows the package or not.
+  // ROS may not know the package. The scene's file usually lies in the same package as its meshes, so search upwards.
   std::error_code ignored;
   for (fs::path above = fs::current_path(ignored) / folder;; above = above.parent_path()) {
     if (above.filename() == package) return above;

@@ -1,14 +1,14 @@
 #pragma once
-/// Files that a scene names.
+/// Finds files that a scene names, such as meshes.
 
 #include <string>
 
 namespace flexarm::scene {
 
-/// Where a file lies: the path of file://PATH; a path, from the folder of the scene's file on; or of
-/// package://PACKAGE/PATH: of a package in ROS_PACKAGE_PATH, else of a folder of that name that the scene's file is in
-/// or beside.
-/// @throws std::runtime_error saying what was looked for where
+/// Returns the path of a file that is given as file://PATH, package://PACKAGE/PATH, or a path relative to the folder of
+/// the scene's file. A package is searched in ROS_PACKAGE_PATH. If it is not there, a folder of its name is searched in
+/// all folders above the scene's file.
+/// @throws std::runtime_error if there is no such package, or the URL has another scheme
 std::string path_of_resource(const std::string& url, const std::string& scene_file);
 
 }  // namespace flexarm::scene

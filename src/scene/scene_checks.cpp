@@ -21,9 +21,9 @@ std::string line_text(const SourceLocation& location) {
   return "line " + std::to_string(location.line);
 }
 
-using NamesTaken = std::map<std::string, int>;  // and the line that took them
+using NamesTaken = std::map<std::string, int>;  // names, and the lines in which they first occur
 
-/// Records a name that is there already.
+/// Records an error if the name is in `taken`; else adds it.
 template <class Named>
 void check_name(const Named& thing, const char* tag, Findings& findings, NamesTaken& taken) {
   const auto [first, is_new] = taken.emplace(thing.name, thing.location.line);
@@ -32,7 +32,7 @@ void check_name(const Named& thing, const char* tag, Findings& findings, NamesTa
                    "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
 }
 
-/// Records names that come twice. Missing names are recorded already.
+/// Records errors for names that occur twice. Errors for missing names are recorded elsewhere.
 template <class Named>
 NamesTaken check_unique(const std::vector<Named>& things, const char* tag, Findings& findings, NamesTaken taken = {}) {
   for (const Named& thing : things) check_name(thing, tag, findings, taken);
@@ -41,7 +41,7 @@ NamesTaken check_unique(const std::vector<Named>& things, const char* tag, Findi
 
 // ---------------------------------------------------------------- tree
 
-/// Records joints to nowhere.
+/// Records errors for joints whose parent or child is not a link of the scene.
 void check_links(const SceneDescription& scene, const std::vector<JointDescription>& joints, const char* joint_tag,
                  Findings& findings) {
   std::set<std::string> links;
@@ -53,7 +53,8 @@ void check_links(const SceneDescription& scene, const std::vector<JointDescripti
                        std::string(tag) + " must be a link of the scene", quoted(name));
 }
 
-/// The joint above each link; records links with two joints.
+/// Returns, by the name of each link, the joint whose child it is. Records errors for links that are the child of two
+/// joints.
 std::map<std::string, const JointDescription*> find_parents(const SceneDescription& scene, Findings& findings) {
   std::map<std::string, const JointDescription*> parents;
   for (const JointDescription& joint : scene.joints) {
@@ -70,11 +71,12 @@ std::map<std::string, const JointDescription*> find_parents(const SceneDescripti
   return parents;
 }
 
-/// Follows `next` (a name, or nothing at an end) from all names; one name of each ring that it leads into.
+/// Follows the chain of `next` from every name, and returns one name of each ring. `next` returns a name, or nothing at
+/// the end of a chain.
 template <class Named, class Next>
 std::vector<std::string> find_rings(const std::vector<Named>& things, const Next& next) {
   std::vector<std::string> rings;
-  std::map<std::string, int> visits;  // the walk that first came to a name: every name is left only once
+  std::map<std::string, int> visits;  // by name: the number of the walk that first reached it
   int walk = 0;
   for (const Named& thing : things) {
     ++walk;
@@ -93,14 +95,14 @@ void check_rings(const SceneDescription& scene, const std::map<std::string, cons
                  Findings& findings) {
   const auto above = [&](const std::string& link) -> std::optional<std::string> {
     const auto joint = parents.find(link);
-    // A joint from a link to itself is recorded already.
+    // An error for a joint from a link to itself is recorded already.
     if (joint == parents.end() || joint->second->parent == link) return std::nullopt;
     return joint->second->parent;
   };
   for (const std::string& link : find_rings(scene.links, above)) {
     const JointDescription& joint = *parents.at(link);
     findings.error(joint.location.line, element_of("joint", joint.name),
-                   "joints must form a tree; following the parents leads round in a ring", quoted(link));
+                   "joints must form a tree, but their parents form a ring", quoted(link));
   }
 }
 
@@ -172,7 +174,7 @@ class ReferenceCheck {
       check_link(initial.link, initial.location, element);
       if (initial.link == scene_.root_link && !scene_.root_link.empty())
         findings_.error(initial.location.line, element,
-                        "the root link is clamped and cannot move, unless <root type=\"floating\"/> lets it fly",
+                        "the root link is clamped and cannot move, unless <root type=\"floating\"/> lets it float",
                         quoted(initial.link));
       if (!moving.insert(initial.link).second)
         findings_.error(initial.location.line, element, "the link has an initial velocity already",
@@ -183,7 +185,7 @@ class ReferenceCheck {
       const char* element = "<distributed_load> of simulation";
       check_link(load.link, load.location, element);
       const auto link = links_.find(load.link);
-      // A beam with an error is recorded already, and so is its link; only a link without a line is wrong here.
+      // If the link's <beam> has an error, that is recorded already. Here only a link without <beam> is an error.
       if (link != links_.end() && !link->second->beam && unreadable_.count(load.link) == 0)
         findings_.error(load.location.line, element, "link must have a <beam>", quoted(load.link));
     }
@@ -209,7 +211,7 @@ class ReferenceCheck {
   }
 
  private:
-  /// Records sensors of different names whose messages come on one topic.
+  /// Warns about sensors with different names that publish on the same topic.
   void check_topics() const {
     std::map<std::string, const Sensor*> topics;
     for (const Sensor& sensor : scene_.sensors) {
@@ -241,7 +243,7 @@ class ReferenceCheck {
       findings_.error(sensor.location.line, element, "no joint carries the root link", quoted(sensor.link));
     else if (needs_joint && sensor.joint.empty() && has_play_above(sensor.link))
       findings_.error(sensor.location.line, element,
-                      "the joint that carries the link has a <clearance>, and transmits nothing but by contact",
+                      "the joint that carries the link has a <clearance>, and transmits forces by contact only",
                       quoted(sensor.link));
     check_group(sensor, element);
   }
@@ -260,8 +262,8 @@ class ReferenceCheck {
     };
     for (const std::string& name : sensor.group)
       if (links_.count(name) == 0 && !is_ground(name))
-        findings_.error(sensor.location.line, element, "group must be links and grounds of the scene, apart by spaces",
-                        quoted(name));
+        findings_.error(sensor.location.line, element,
+                        "group must be links and grounds of the scene, separated by spaces", quoted(name));
   }
 
   bool closes_loop_at(const std::string& name, const std::string& link) const {
@@ -271,6 +273,7 @@ class ReferenceCheck {
   }
 
   void add_joint(const JointDescription& joint) {
+    if (joint.is_hidden) return;
     joints_.emplace(joint.name, &joint);
     for (const std::string& suffix : coordinate_suffixes(joint)) add_coordinate(joint, joint.name + suffix);
   }
@@ -322,7 +325,7 @@ class ReferenceCheck {
     check_free_coordinates(scene_.springs, "<spring> of robot", {});
   }
 
-  /// Entries of one kind, none on a coordinate in `moved`.
+  /// Checks entries of one kind. Each must name a coordinate that is not in `moved`, the prescribed ones.
   template <class Entries>
   void check_free_coordinates(const Entries& entries, const char* element, const std::set<std::string>& moved) const {
     std::set<std::string> used;
@@ -332,7 +335,7 @@ class ReferenceCheck {
     }
   }
 
-  /// The coordinate exists, follows no other, and is not yet in `used`, to which it is added.
+  /// Checks that the coordinate exists, does not mimic another one, and is not yet in `used`. Adds it to `used`.
   void check_coordinate(const std::string& name, const SourceLocation& location, const char* element,
                         std::set<std::string>& used) const {
     if (name.empty() || unreadable_.count(name.substr(0, name.rfind('/'))) > 0 || unreadable_.count(name) > 0) return;

@@ -1,6 +1,6 @@
 #pragma once
-/// What only the scene as a whole can show: whether its names refer to something, once, its joints form a tree, those
-/// that mimic others can follow them, and its bodies can have the inertia that the file gives them.
+/// Checks of a whole scene: names are unique and refer to something, joints form a tree, mimicking joints can follow
+/// their masters, inertias are physically possible, and units are probably the right ones.
 
 #include <set>
 #include <string>
@@ -13,26 +13,35 @@ namespace flexarm::scene {
 /// Checks links and joints and sets `scene.root_link`.
 void check_tree(SceneDescription& scene, Findings& findings);
 
-/// Checks mimicking joints and the names in <simulation>. Coordinates of `unreadable` joints are not judged.
+/// Checks mimicking joints, and all names that <simulation>, force elements and sensors refer to. `unreadable`: names
+/// of links and joints with errors of their own; references to them are not checked.
 void check_references(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings);
 
 // ---------------------------------------------------------------- joints that mimic others (mimic_chain.cpp)
 
-/// Records, as warnings, followers that are held since the joint at the end of their chain is fixed, and those whose
-/// own limits the limits of that joint do not keep. For scenes whose mimics are good.
+/// Warns about two kinds of followers, that is, joints that mimic others: those that cannot move since the joint at the
+/// end of their chain is fixed, and those whose own limits the motion of that joint may exceed. The scene's <mimic>s
+/// must have no errors.
 void check_followers(const SceneDescription& scene, Findings& findings);
 
-/// Adds constant motions of the joints that mimic, directly or through others, a fixed joint. They keep their <mimic>,
-/// which has no effect then.
+/// Adds a constant prescribed motion for each joint that mimics a fixed joint, directly or through others. These joints
+/// keep their <mimic>, which then has no effect.
 void hold_followers_of_fixed_joints(SceneDescription& scene);
 
 // ---------------------------------------------------------------- inertias (inertia_checks.cpp)
 
-/// Principal moments of a symmetric inertia matrix, in increasing order.
+/// Returns the principal moments of a symmetric inertia matrix, in increasing order.
 Vector3 principal_moments(const Matrix3& inertia);
 
-/// Records principal moments that no body has: negative ones are errors where something would move with them, and
-/// warnings where they are negligible or made up for by the links that are fixed to the link. Beams have their own.
+/// Records principal moments that no body can have. A negative one is an error if something would move with it. It is a
+/// warning if it is negligible, or if links fixed to this link compensate it. Links with beams are skipped, since their
+/// inertia is the beam's.
 void check_inertias(const SceneDescription& scene, Findings& findings);
+
+// ---------------------------------------------------------------- units (unit_checks.cpp)
+
+/// Warns about beams whose material or size is so unusual that it was probably given in other units: GPa or MPa,
+/// g/cm^3, mm. Only sections with a shape and a material are judged.
+void warn_of_units(const SceneDescription& scene, Findings& findings);
 
 }  // namespace flexarm::scene

@@ -72,4 +72,11 @@ std::size_t sensor_error_count(SensorKind kind) {
   return kind == SensorKind::Pose ? 6 : sensor_channels(kind).size();
 }
 
+const JointLimits* limits_of(const SceneDescription& scene, const std::string& coordinate) {
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const JointDescription& joint : *joints)
+      if (joint.name == coordinate) return joint.limits ? &*joint.limits : nullptr;
+  return nullptr;
+}
+
 }  // namespace flexarm::scene

@@ -79,7 +79,8 @@ std::optional<DirectSection> read_direct_section(const XmlElement& section) {
 
 constexpr double kMatrixTolerance = 1e-9;  // relative to the largest number of the matrix or block
 
-/// Relative to the diagonal, since translations and rotations have different units.
+/// Whether the matrix is symmetric up to round-off. Differences are compared with the diagonal, since translations and
+/// rotations have different units.
 bool is_symmetric(const Matrix6& matrix) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < i; ++j) {
@@ -91,7 +92,8 @@ bool is_symmetric(const Matrix6& matrix) {
   return true;
 }
 
-/// The matrix with a unit diagonal: its definiteness does not depend on units. Needs a positive diagonal.
+/// Scales rows and columns to a unit diagonal, so that a test of definiteness does not depend on units. Needs a
+/// positive diagonal.
 Matrix6 scaled_to_unit_diagonal(const Matrix6& matrix) {
   const Vector6 scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
   return scale.asDiagonal() * matrix * scale.asDiagonal();
@@ -121,7 +123,7 @@ std::optional<MatrixSection> read_section_matrix(const XmlElement& section) {
   return MatrixSection{*stiffness, *inertia};
 }
 
-// ---------------------------------------------------------------- one of all kinds
+// ---------------------------------------------------------------- sections of any kind
 
 constexpr const char* kSectionTags[] = {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"};
 constexpr const char* kSectionExpected =
@@ -131,7 +133,7 @@ bool is_shape(const XmlElement& section) {
   return section.tag() != "section" && section.tag() != "section_matrix";
 }
 
-/// The one section that `parent` has, of which it must not have more.
+/// Returns the first section among the children of `parent`; records an error for each further one.
 std::optional<XmlElement> find_section(const XmlElement& parent, const std::string& has_already) {
   std::optional<XmlElement> first;
   for (const XmlElement& child : parent.children()) {
@@ -142,7 +144,7 @@ std::optional<XmlElement> find_section(const XmlElement& parent, const std::stri
   return first;
 }
 
-/// `material`: the beam's, for shapes; nothing if it is wrong.
+/// Reads a section. `material`: the beam's material, which shapes need; empty if it is missing or has errors.
 std::optional<UniformSection> read_uniform(const XmlElement& section, const std::optional<Material>& material) {
   const auto widened = [](const auto& read) { return read ? std::optional<UniformSection>(*read) : std::nullopt; };
   if (section.tag() == "section") return widened(read_direct_section(section));
@@ -152,7 +154,7 @@ std::optional<UniformSection> read_uniform(const XmlElement& section, const std:
   return GeometricSection{*shape, *material};
 }
 
-/// Sections of which every length, stiffness and inertia has another one to go to.
+/// Whether the two sections can be interpolated: they have the same kind of data, and the same shape if they have one.
 bool are_alike(const UniformSection& a, const UniformSection& b) {
   if (a.index() != b.index()) return false;
   const auto *one = std::get_if<GeometricSection>(&a), *other = std::get_if<GeometricSection>(&b);
@@ -169,8 +171,8 @@ std::optional<Section> read_stations(const XmlElement& stations, const std::opti
     station.expect_only({"at"}, {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"});
     const std::optional<double> at = station.number("at", kNonNegative);
     if (at && !out.arc_lengths.empty() && !(*at > out.arc_lengths.back()))
-      station.attribute_error(
-          "at", fmt::format("stations are in the order of their arc lengths, at must be > {}", out.arc_lengths.back()));
+      station.attribute_error("at", fmt::format("stations must be in the order of their arc lengths: at must be > {}",
+                                                out.arc_lengths.back()));
     const std::optional<XmlElement> section = find_section(station, "the station");
     if (!section) station.error(std::string("a section is missing: ") + kSectionExpected);
     if (!at || !section) continue;
@@ -185,7 +187,7 @@ std::optional<Section> read_stations(const XmlElement& stations, const std::opti
   }
   if (stations.findings().error_count() > errors) return std::nullopt;
   if (out.sections.size() >= 2) return out;
-  // A material that is wrong has been told already, and then there are no sections.
+  // Without a material no section could be read; an error about the material is recorded already.
   if (stations.findings().error_count() == 0 || material) stations.error("at least two <station> are expected");
   return std::nullopt;
 }

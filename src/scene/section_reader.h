@@ -1,24 +1,25 @@
 #pragma once
-/// The cross-section of a <beam>.
+/// Reads the cross-section of a <beam>.
 
 #include "scene/xml_element.h"
 
 namespace flexarm::scene {
 
-/// Reads the section of a <beam>; nothing if there is an error, which is recorded.
+/// Reads the section of a <beam>. If there is an error, records it and returns nothing.
 std::optional<Section> read_section(const XmlElement& beam);
 
-/// Reads the CSV file that `stations` names, relative to the scene's folder: a line of names of columns, then numbers.
-/// `at` is the arc length; besides it either the attributes of <section>, or the upper triangles k11, k12, ..., k66 of
-/// the stiffness and m11, m12, ..., m66 of the inertia of <section_matrix>. Nothing if there is an error, which is
-/// recorded.
+/// Reads the CSV file that `stations` names, relative to the scene's folder. Its first line has the names of the
+/// columns. Column `at` is the arc length [m]. The others are either the attributes of <section>, or the upper
+/// triangles of the matrices of <section_matrix>: k11, k12, ..., k66 of the stiffness and m11, m12, ..., m66 of the
+/// inertia. If there is an error, records it and returns nothing.
 std::optional<SectionStations> read_section_table(const XmlElement& stations);
 
-// ---------------------------------------------------------------- what matrices of a section must be
+// ---------------------------------------------------------------- checks of a section's matrices
 
 bool is_positive_definite(const Matrix6& matrix);
 
-/// [[m 1, -m d^], [m d^, J]] with m > 0 and J - m d^T d^ (about the centre of mass) positive semidefinite.
+/// Whether the matrix has the form [[m 1, -m d^], [m d^, J]], with m > 0 and J - m d^T d^, the inertia about the centre
+/// of mass, positive semidefinite.
 bool is_inertia(const Matrix6& matrix);
 
 }  // namespace flexarm::scene

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kDirect[] = {"ea", "ga2", "ga3", "gj", "ei2", "ei3", "mass", "j1", "j2", "j3"};
 constexpr std::size_t kMostStations = 100000;
 
-/// "k11", "k12", ..., "k66".
+/// Returns the names of an upper triangle's columns: "k11", "k12", ..., "k66" for the letter k.
 std::vector<std::string> triangle(char letter) {
   std::vector<std::string> names;
   for (int i = 1; i <= 6; ++i)
@@ -21,7 +21,7 @@ std::vector<std::string> triangle(char letter) {
   return names;
 }
 
-/// A line of the table by the names of its columns.
+/// A row of the table: numbers by the names of their columns.
 using Row = std::map<std::string, double>;
 
 Matrix6 symmetric_matrix(const Row& row, char letter) {
@@ -44,7 +44,7 @@ class StationReader {
       if (!row) return std::nullopt;
       const double at = row->at("at");
       if (!out.arc_lengths.empty() && !(at > out.arc_lengths.back())) {
-        table_.error(fmt::format("at must be > {}, that of the line before", out.arc_lengths.back()),
+        table_.error(fmt::format("at must be > {}, the value of the line before", out.arc_lengths.back()),
                      fmt::to_string(at));
         return std::nullopt;
       }

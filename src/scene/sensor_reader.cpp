@@ -15,10 +15,10 @@ constexpr Choice<SensorKind> kKinds[] = {
     {"strain", SensorKind::Strain},  {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose},
     {"contact", SensorKind::Contact}};
 constexpr std::size_t kMostErrors = 6;
-/// Samples of a run of years can be counted.
+/// The upper bound lets the samples of a run of years be counted.
 constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
 
-/// One number for all errors, or one for each.
+/// Reads `noise` or `bias`: one number for all channels, or `count` numbers.
 std::vector<double> read_errors(const XmlElement& sensor, const char* attribute, std::size_t count) {
   if (!sensor.has(attribute)) return {};
   std::vector<double> errors = sensor.all_numbers(attribute, kMostErrors).value_or(std::vector<double>());
@@ -28,7 +28,7 @@ std::vector<double> read_errors(const XmlElement& sensor, const char* attribute,
   return {};
 }
 
-/// Names apart by white space.
+/// Reads names that are separated by white space.
 std::vector<std::string> read_group(const XmlElement& sensor) {
   const std::optional<std::string> text = sensor.text("group");
   std::istringstream words(text.value_or(""));

@@ -15,7 +15,7 @@ constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 
 constexpr NumberRange kStep{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= kLongestStep; }};
 constexpr NumberRange kTolerance{"> 0 and at most 1", [](double x) { return x > 0 && x <= kLargestTolerance; }};
 
-/// beta of Newmark's method divides: the explicit beta = 0 is another algorithm.
+/// alpha of the HHT method.
 constexpr NumberRange kHhtRange{"from -1/3 to 0", [](double x) { return x >= -1.0 / 3 && x <= 0; }};
 
 std::optional<Interpolation> read_interpolation(const XmlElement& integrator) {
@@ -48,6 +48,7 @@ void read_scheme(const XmlElement& integrator, IntegratorDescription& descriptio
   }
   if (integrator.has("interpolation")) description.interpolation = read_interpolation(integrator);
   if (integrator.has("weak_form")) description.weak_form = read_weak_form(integrator);
+  // Newmark's method divides by beta; with beta = 0 it is explicit, which is another algorithm.
   if (integrator.has("beta")) description.beta = integrator.number("beta", kPositive);
   if (integrator.has("gamma")) description.gamma = integrator.number("gamma", kPositive);
   if (integrator.has("alpha")) description.alpha = integrator.number("alpha", kHhtRange);
@@ -80,7 +81,8 @@ void read_gravity(const XmlElement& gravity, SceneDescription& scene) {
   scene.gravity = gravity.vector("xyz").value_or(scene.gravity);
 }
 
-/// A number, or "clamp": then 0, until the joint's limits are known.
+/// Reads `position`: a number, or "clamp". For "clamp" returns 0; settle_positions() replaces it when the joint's
+/// limits are known.
 double read_initial_position(const XmlElement& initial, const std::string& coordinate, StartRequest& start) {
   if (!initial.has("position")) return 0;
   if (initial.text("position") == "clamp") {

@@ -15,7 +15,7 @@ struct StandardAttribute {
   const char* child;
   const char* attribute;
   std::size_t count;
-  bool required;  // where the child is there
+  bool required;  // if the child exists
   NumberRange range;
 };
 
@@ -49,8 +49,9 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
   }
 }
 
-/// Has urdfdom read a document with only these elements of <robot>. What only other programs stumble over is a warning.
-/// @returns whether there is none
+/// Lets urdfdom read a document whose <robot> has only these elements. If urdfdom reports an error, records a warning,
+/// since flexarm itself can read the element.
+/// @returns whether urdfdom reports no error
 bool judge_alone(const XmlElement& element, const std::string& elements) {
   const std::vector<std::string> errors = errors_of_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
   if (!errors.empty()) element.warning("programs that use urdfdom cannot read it", quoted(errors.front()));
@@ -70,7 +71,7 @@ Pose read_origin(const XmlElement& element) {
   return origin ? read_pose(*origin) : Pose();
 }
 
-/// An attribute that has been checked already; 0 if it or the child is not there.
+/// Returns a number that check_attributes() has checked; 0 if the attribute or the child is missing.
 double checked_number(const XmlElement& element, const char* child, const char* attribute) {
   const std::optional<XmlElement> found = element.child(child);
   return found ? found->number(attribute, kAnyNumber, 0) : 0;
@@ -103,14 +104,15 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
 constexpr Choice<JointKind> kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
                                         {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
                                         {"planar", JointKind::Planar},         {"floating", JointKind::Floating},
-                                        {"spherical", JointKind::Spherical}};  // not URDF's, but Bullet's
+                                        {"spherical", JointKind::Spherical}};  // not in URDF, but in Bullet
 constexpr Choice<JointKind> kReleases[] = {{"spherical", JointKind::Spherical},
                                            {"universal", JointKind::Universal},
                                            {"cylindrical", JointKind::Cylindrical},
                                            {"planar", JointKind::Planar},
                                            {"free", JointKind::Floating}};
 
-/// The kind, after looking at <release>. Those of <couple> and <slide> are read with their data.
+/// Reads the kind of a joint from `type` and <release>. For <couple> and <slide> the exact kind is read with their
+/// data.
 std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
   const std::optional<JointKind> type = read_choice(joint, "type", kTypes);
   std::vector<XmlElement> narrowing;
@@ -123,7 +125,8 @@ std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
     first.error("the type of the joint must be 'floating'", quoted(joint.text("type").value_or("")));
     return std::nullopt;
   }
-  if (first.tag() == "couple") return JointKind::Screw;  // until it is read: one with an axis
+  // Preliminary, until read_couple() sets the kind: any kind with an axis.
+  if (first.tag() == "couple") return JointKind::Screw;
   if (first.tag() == "slide") return JointKind::Slide;
   first.expect_only({"kind"});
   return read_choice(first, "kind", kReleases);
@@ -135,7 +138,7 @@ bool uses_axis(JointKind kind) {
 
 void read_axes(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> axis = joint.child("axis"), axis2 = joint.child("axis2");
-  // What has none may have any: exporters give fixed joints the axis 0 0 0.
+  // The <axis> of a joint that uses none is ignored: exporters give fixed joints the axis 0 0 0.
   if (axis && uses_axis(description.kind)) description.axis = axis->direction("xyz").value_or(description.axis);
   const bool is_coupled_slide = description.slide && has_dependent_travel(description.slide->rotation);
   if (joint.child("couple") || is_coupled_slide) {
@@ -161,7 +164,8 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
     axis2->attribute_error("xyz", "the axes of a universal joint must not be parallel");
 }
 
-/// A number >= 0; 0 where it is missing or below 0, which is a warning: SDF's way to say that there is no limit.
+/// Reads a limit. Returns 0, which means no limit, if the attribute is missing or below 0. A value below 0 means no
+/// limit in SDF, so it only gives a warning.
 double read_unlimited(const XmlElement& limit, const char* attribute) {
   const tinyxml2::XMLAttribute* found = limit.xml().FindAttribute(attribute);
   std::string_view text = found ? found->Value() : "";
@@ -180,14 +184,14 @@ void read_limits(const XmlElement& joint, JointDescription& description) {
       !has_dependent_travel(description.kind))
     return;
   const double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
-  if (has_dependent_travel(description.kind) && lower == upper) return;  // given for effort only
+  if (has_dependent_travel(description.kind) && lower == upper) return;  // <limit> is given for its effort only
   if (lower > upper) limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", lower, upper));
   if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
   description.limits = JointLimits{lower, upper, velocity, std::nullopt};
   if (limit->has("restitution")) description.limits->restitution = limit->number("restitution", kRestitution);
 }
 
-/// The coordinate that a joint follows. Exporters keep <mimic> where they have fixed a joint.
+/// Reads <mimic>. Exporters leave it on joints that they have made fixed, so there it only gives a warning.
 std::optional<Mimic> read_mimic(const XmlElement& mimic, JointKind kind) {
   if (kind == JointKind::Fixed) {
     mimic.warning("is ignored: a fixed joint has no coordinate that could follow another");
@@ -201,8 +205,8 @@ bool is_fixed(const XmlElement& joint) {
   return joint.has("type") && std::string_view(joint.xml().Attribute("type")) == "fixed";
 }
 
-/// What has no effect is not judged: of a fixed joint axis, limits, dynamics and mimic, of one without stops their
-/// range.
+/// Checks the children of a joint. Skips children without effect: axis, limits, dynamics and mimic of a fixed joint,
+/// and the range of a joint without stops.
 void check_joint_structure(const XmlElement& joint) {
   joint.expect_at_most_one(
       {"origin", "parent", "child", "axis2", "release", "couple", "friction", "child_origin", "clearance"});
@@ -217,15 +221,15 @@ void check_joint_structure(const XmlElement& joint) {
     joint.error("a " + type + " joint needs <limit effort=\"...\" velocity=\"...\" lower=\"...\" upper=\"...\"/>");
 }
 
-/// Name of the link in <parent> or <child>; empty if there is none, which is recorded.
+/// Returns the name of the link in <parent> or <child>. If it is missing, records an error and returns an empty text.
 std::string read_link_name(const XmlElement& joint, const char* tag) {
   const std::optional<XmlElement> child = joint.child(tag);
   if (!child) joint.error("<" + std::string(tag) + " link=\"...\"/> is missing");
   return child ? child->name("link").value_or("") : "";
 }
 
-/// Text of a joint as a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of
-/// the file.
+/// Returns the XML text of a joint as a <joint> between links named "parent" and "child", so that urdfdom can judge it
+/// without the rest of the file.
 std::string printed_joint(const XmlElement& joint) {
   tinyxml2::XMLDocument document;
   tinyxml2::XMLElement* copy = joint.xml().DeepClone(&document)->ToElement();
@@ -249,15 +253,15 @@ LinkDescription read_link(const XmlElement& unnamed) {
   link.expect_at_most_one({"inertial", "beam"});
   if (const std::optional<XmlElement> inertial = link.child("inertial"))
     description.inertial = read_inertial(*inertial);
-  // Each alone, since urdfdom leaves a link at its first error.
+  // Give urdfdom one child at a time, since it stops reading a link at the first error.
   for (const XmlElement& child : link.children()) {
     if (child.tag() != "visual" && child.tag() != "collision") continue;
     const bool is_good = judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
     const bool is_collision = child.tag() == "collision";
-    if (!is_good || (!is_collision && !link.child("beam"))) continue;
+    if (!is_good) continue;
     if (const std::optional<VisualDescription> shape = shape_of_urdfdom(child.xml()))
       (is_collision ? description.collisions : description.visuals).push_back(*shape);
-    else if (!is_collision)
+    else if (!is_collision && link.child("beam"))  // rviz draws those of rigid links itself
       child.warning("is not shown: its shape must have an extent, of finite numbers");
   }
   return description;
@@ -295,9 +299,29 @@ JointDescription read_joint(const XmlElement& unnamed) {
   return description;
 }
 
+void read_travel(const XmlElement& element, JointDescription& description, const NumberRange& positions) {
+  element.expect_at_most_one({"limit", "dynamics", "friction"});
+  check_attributes(element, kMovableAttributes);
+  if (const std::optional<XmlElement> dynamics = element.child("dynamics"))
+    dynamics->expect_only({"damping", "friction"});
+  description.damping = checked_number(element, "dynamics", "damping");
+  description.friction = checked_number(element, "dynamics", "friction");
+  if (const std::optional<XmlElement> friction = element.child("friction")) read_friction(*friction, description);
+  const std::optional<XmlElement> limit = element.child("limit");
+  if (!limit) return;
+  limit->expect_only({"lower", "upper", "effort", "velocity", "restitution"});
+  if (limit->has("lower") || limit->has("upper")) {
+    if (limit->number("lower", positions) && limit->number("upper", positions)) read_limits(element, description);
+    return;
+  }
+  description.effort_limit = read_unlimited(*limit, "effort");
+  if (limit->has("restitution")) limit->attribute_error("restitution", "there are no stops without lower and upper");
+}
+
 namespace {
 
-/// One side of a loop joint in the form of Drake and Isaac Sim: the link, and the place of the joint in it.
+/// Reads <link1> or <link2> of a loop joint in the form of Drake and Isaac Sim. Sets `link` to the name of the link,
+/// and returns the pose of the joint frame in the link frame.
 Pose read_side(const XmlElement& joint, const char* tag, std::string& link) {
   const std::optional<XmlElement> side = joint.child(tag);
   if (!side) {
@@ -347,7 +371,7 @@ JointDescription read_loop_joint(const XmlElement& unnamed) {
     description.child_origin = read_pose(*origin);
   }
   if (description.kind == JointKind::Floating && joint.findings().error_count() == errors)
-    joint.error("a <loop_joint> must hold something: not 'floating' alone, nor <release kind=\"free\"/>");
+    joint.error("a <loop_joint> must constrain something: type 'floating' and <release kind=\"free\"/> do not");
   return description;
 }
 

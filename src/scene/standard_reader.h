@@ -1,5 +1,6 @@
 #pragma once
-/// URDF's own <link> and <joint>: read and checked line by line; urdfdom tells what other programs make of them.
+/// Reads URDF's own elements <link> and <joint>, and flexarm's <loop_joint>. urdfdom reads them too, to warn of faults
+/// that other programs would refuse.
 
 #include "scene/xml_element.h"
 
@@ -8,13 +9,17 @@ namespace flexarm::scene {
 /// Reads <link> without its <beam>. The name and the location are set even if there are errors.
 LinkDescription read_link(const XmlElement& link);
 
-/// Reads <joint> with its <release> and <axis2>. Names and location are set even if there are errors.
+/// Reads <joint>, except its <clearance>. Names and location are set even if there are errors.
 JointDescription read_joint(const XmlElement& joint);
 
-/// Reads <loop_joint>: the same elements, less <slide> and <mimic>, and <child_origin>.
+/// Reads <loop_joint>: the children of <joint> except <slide> and <mimic>, and <child_origin>.
 JointDescription read_loop_joint(const XmlElement& joint);
 
-/// Records what urdfdom finds wrong with a <material> of the robot.
+/// Reads the children <limit>, <dynamics> and <friction> of an element whose position is a travel without <origin> or
+/// <axis>. The kind must be set. Without `lower` and `upper` there are no stops. `positions`: what these must be.
+void read_travel(const XmlElement& element, JointDescription& description, const NumberRange& positions);
+
+/// Warns if urdfdom cannot read a <material> of <robot>.
 void judge_material(const XmlElement& material);
 
 }  // namespace flexarm::scene

@@ -21,14 +21,14 @@ const Named* find(const std::vector<Named>& things, const std::string& name) {
   return found == things.end() ? nullptr : &*found;
 }
 
-/// Records that a name is taken which the floating root needs.
+/// Whether a name that the floating root needs is free; if not, records an error.
 template <class Named>
 bool is_free(const std::vector<Named>& things, const char* tag, const char* name, int line, Findings& findings) {
   const Named* taken = find(things, name);
   if (taken)
     findings.error(line, "<root> of simulation",
-                   fmt::format("a floating root link needs the name {} for a {}, which line {} has taken", quoted(name),
-                               tag, taken->location.line));
+                   fmt::format("a floating root link needs the name {} for a {}, which is already used in line {}",
+                               quoted(name), tag, taken->location.line));
   return !taken;
 }
 
@@ -50,9 +50,10 @@ void let_root_float(SceneDescription& scene, const SourceLocation& location, Fin
   scene.links.push_back(world);
 }
 
-/// Mass of the root link and of what is fixed to it [kg]; it is not moved, so whatever hangs on a beam does not count.
+/// Mass of the root link and of links that are rigidly fixed to it [kg]. Links behind a beam do not count, since they
+/// move.
 double clamped_mass(const SceneDescription& scene) {
-  std::map<std::string, std::vector<std::string>> fixed;  // links, by the parent
+  std::map<std::string, std::vector<std::string>> fixed;  // by parent: the links fixed to it
   for (const JointDescription& joint : scene.joints)
     if (joint.kind == JointKind::Fixed) fixed[joint.parent].push_back(joint.child);
   std::map<std::string, const LinkDescription*> links;
@@ -66,36 +67,37 @@ double clamped_mass(const SceneDescription& scene) {
     if (link->second->inertial) mass += link->second->inertial->mass;
     const std::vector<std::string>& further = fixed[link->first];
     stack.insert(stack.end(), further.begin(), further.end());
-    links.erase(link);  // once, even in a bad tree
+    links.erase(link);  // so that each link counts once, even in a faulty tree
   }
   return mass;
 }
 
-/// Records a coordinate that is to start at its limits and has none.
+/// Records an error if a coordinate is to start at its nearest limit, and its joint has no limits.
 void check_limited(const SceneDescription& scene, const std::string& coordinate, int line, Findings& findings) {
   const JointDescription* joint = find(scene.joints, coordinate);
-  if (!joint) joint = find(scene.joints, coordinate.substr(0, coordinate.rfind('/')));  // one of its coordinates
+  if (!joint) joint = find(scene.joints, coordinate.substr(0, coordinate.rfind('/')));  // of a joint with several
   if (joint && !joint->mimic && !joint->limits)
     findings.error(line, "<initial> of simulation",
                    "position may be 'clamp' only for a joint with lower and upper limits", quoted(coordinate));
 }
 
-/// A joint's stops act: it follows neither another joint nor a motion.
+/// Whether a joint has stops that act: it has valid limits, mimics no joint, and its motion is not prescribed.
 bool has_stops(const JointDescription& joint, const std::set<std::string>& moved) {
   return joint.limits && joint.limits->lower <= joint.limits->upper && !joint.mimic && moved.count(joint.name) == 0;
 }
 
-/// `advice`: how it can start inside them.
+/// Warns if a joint starts outside its limits. `advice`: end of the message, on how to start inside them.
 void check_start(const JointDescription& joint, double position, const SourceLocation& location,
                  const std::string& advice, Findings& findings) {
   if (position >= joint.limits->lower && position <= joint.limits->upper) return;
   findings.warning(location.line, element_named("joint", joint.name),
-                   fmt::format("starts outside its limits, {} to {}, and its stop will throw it back{}",
+                   fmt::format("starts outside its limits, {} to {}, and its stop will push it back{}",
                                joint.limits->lower, joint.limits->upper, advice),
                    fmt::format("'{}'", position));
 }
 
-/// A velocity alone leaves a slider where its <slide> has it start.
+/// If <initial> gives a slider's velocity but not its position, the slider starts at the position that its <slide>
+/// gives.
 void start_sliders(const SceneDescription& scene, const std::set<std::string>& placed,
                    const std::map<std::string, InitialJoint*>& initials) {
   for (const JointDescription& joint : scene.joints) {
@@ -114,13 +116,14 @@ void settle_root(SceneDescription& scene, const StartRequest& request, Findings&
     if (request.root->floats) let_root_float(scene, request.root->location, findings);
     return;
   }
-  if (scene.root_link == kWorld) return;  // which says it
+  if (request.is_spawned || scene.root_link == kWorld) return;  // the name says that it is clamped
   const LinkDescription* root = find(scene.links, scene.root_link);
   if (const double mass = clamped_mass(scene); root && mass > 0)
-    findings.warning(root->location.line, element_named("link", root->name),
-                     "the root link is clamped, though it and what is fixed to it have a mass; <root "
-                     "type=\"floating\"/> in <simulation> lets it fly, <root type=\"clamped\"/> says that it is meant",
-                     fmt::format("'{}' kg", mass));
+    findings.warning(
+        root->location.line, element_named("link", root->name),
+        "the root link is clamped, though it and what is fixed to it have a mass; <root "
+        "type=\"floating\"/> in <simulation> lets it float, <root type=\"clamped\"/> confirms that it is clamped",
+        fmt::format("'{}' kg", mass));
 }
 
 void settle_positions(SceneDescription& scene, const StartRequest& request, const std::set<std::string>& unreadable,
@@ -133,10 +136,19 @@ void settle_positions(SceneDescription& scene, const StartRequest& request, cons
     if (unreadable.count(coordinate) == 0)
       check_limited(scene, coordinate, initials.at(coordinate)->location.line, findings);
 
+  std::set<std::string> cylinders;  // these get their positions when a Simulation is made
+  for (const CylinderDescription& cylinder : scene.cylinders) cylinders.insert(cylinder.name);
+  for (const auto* given : {&request.clamped, &request.placed})
+    for (const std::string& coordinate : *given)
+      if (cylinders.count(coordinate) > 0)
+        findings.error(initials.at(coordinate)->location.line, "<initial> of simulation",
+                       "a <cylinder> has no initial position: it starts with the length that the positions of the "
+                       "other joints give it",
+                       quoted(coordinate));
   start_sliders(scene, request.placed, initials);
   std::vector<InitialJoint> added;
   for (const JointDescription& joint : scene.joints) {
-    if (!has_stops(joint, moved)) continue;
+    if (!has_stops(joint, moved) || cylinders.count(joint.name) > 0) continue;
     const auto found = initials.find(joint.name);
     InitialJoint* initial = found == initials.end() ? nullptr : found->second;
     double position = initial ? initial->position : 0;

@@ -22,7 +22,7 @@
 namespace flexarm::scene {
 namespace {
 
-/// Our elements, and the element whose children they are.
+/// An element of flexarm, and the element whose child it must be.
 struct Place {
   const char* tag;
   const char* parent;
@@ -34,14 +34,14 @@ constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"
                              {"hub", "beam"},        {"sensor", "robot"},     {"parameter", "robot"},
                              {"clearance", "joint"}};
 
-/// Those of force elements are children of <robot>.
+/// Returns kPlaces, and a row for each kind of force element: these are children of <robot>.
 std::vector<Place> places_of_all(const std::vector<ForceElementKind>& kinds) {
   std::vector<Place> places(std::begin(kPlaces), std::end(kPlaces));
   for (const ForceElementKind& kind : kinds) places.push_back({kind.tag.c_str(), "robot"});
   return places;
 }
 
-/// Records our elements where they would be ignored like a stranger's.
+/// Records errors for elements of flexarm in a wrong place, where they would be ignored like those of other programs.
 void check_places(const XmlElement& element, const std::vector<Place>& places) {
   const std::string tag = element.tag();
   for (const XmlElement& child : element.children()) {
@@ -60,6 +60,7 @@ class SceneReader {
       kinds_.insert(kinds_.end(), options.more_force_elements->begin(), options.more_force_elements->end());
     places_ = places_of_all(kinds_);
     start_.clamps_all = options.clamp_start;
+    start_.is_spawned = options.is_spawned;
     scene_.lock_massless = options.lock_massless;
     scene_.starts_in_equilibrium = options.equilibrium_start;
   }
@@ -73,10 +74,12 @@ class SceneReader {
     robot.expect_at_most_one({"simulation"});
     for (const XmlElement& child : robot.children()) read_child(child);
     warn_of_strangers(robot, kinds_);
+    warn_of_misspelt_words(robot);
     warn_of_gazebo_loops(robot, scene_);
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
+    check_size(robot, "cylinders", cylinders_.size(), kMostJoints);
     check_size(robot, "springs", scene_.springs.size(), kMostJoints);
     check_size(robot, "drives", scene_.drives.size(), kMostJoints);
     check_size(robot, "servos", scene_.servos.size(), kMostJoints);
@@ -87,9 +90,13 @@ class SceneReader {
     check_size(robot, "<contact>", scene_.contacts.size(), kMostContacts);
     check_size(robot, "<no_contact>", scene_.no_contacts.size(), kMostContacts);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
+    add_cylinders(cylinders_, scene_, unreadable_, findings_);
+    check_size(robot, "winches", winches_.size(), kMostJoints);
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
+    add_winches(winches_, scene_, findings_);  // on the world, even if the root link of the file moves
     check_inertias(scene_, findings_);
+    warn_of_units(scene_, findings_);
     settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
     check_contacts(scene_, findings_);
@@ -122,6 +129,13 @@ class SceneReader {
         scene_.loop_joints.pop_back();
       }
       if (findings_.error_count() > errors) unreadable_.insert(name);
+    } else if (tag == "cylinder" && cylinders_.size() <= kMostJoints) {
+      read_whole_cylinder(child);
+    } else if (tag == "winch" && winches_.size() <= kMostJoints) {
+      winches_.push_back(read_winch(child));
+      const std::string name = winches_.back().travel.name;
+      read_actuators(child.with_name(name));
+      if (findings_.error_count() > errors) unreadable_.insert(name);
     } else if (const ForceElementKind* kind = kind_of(child)) {
       if (scene_.force_elements.size() <= kMostForceElements) scene_.force_elements.push_back(kind->read(child));
     } else if (tag == "ground" && scene_.grounds.size() <= kMostContacts) {
@@ -147,11 +161,28 @@ class SceneReader {
     } else if (tag == "simulation") {
       read_simulation(child, scene_, start_);
     } else if (tag == "sensor" && !child.child("parent") && scene_.sensors.size() <= kMostSensors) {
-      scene_.sensors.push_back(read_sensor(child));  // those with a <parent> are URDF's own
+      scene_.sensors.push_back(read_sensor(child));  // a <sensor> with a <parent> is URDF's own
     }
   }
 
-  /// Reads the <clearance> of a joint; false where it has none.
+  void read_whole_cylinder(const XmlElement& unnamed) {
+    const std::size_t errors = findings_.error_count();
+    cylinders_.push_back(read_cylinder(unnamed));
+    const std::string name = cylinders_.back().cylinder.name;
+    read_actuators(unnamed.with_name(name));
+    if (findings_.error_count() > errors) unreadable_.insert(name);
+  }
+
+  /// Reads what acts on the coordinate of a cylinder or a winch.
+  void read_actuators(const XmlElement& element) {
+    for (const XmlElement& child : element.children()) {
+      if (child.tag() == "spring") scene_.springs.push_back(read_spring(child));
+      if (child.tag() == "drive") scene_.drives.push_back(read_drive(child));
+      if (child.tag() == "servo") scene_.servos.push_back(read_servo(child));
+    }
+  }
+
+  /// Reads the <clearance> of a joint. Returns false if it has none.
   bool read_play(const XmlElement& unnamed, const JointDescription& description) {
     const XmlElement joint = unnamed.with_name(description.name);
     const std::optional<XmlElement> clearance = joint.child("clearance");
@@ -159,7 +190,7 @@ class SceneReader {
     return clearance.has_value();
   }
 
-  /// Null: it is no force element.
+  /// Returns the kind of force element that the child is; null if it is none.
   const ForceElementKind* kind_of(const XmlElement& child) const {
     const auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const ForceElementKind& each) {
       return each.tag == child.tag() && (each.attribute.empty() || child.has(each.attribute.c_str()));
@@ -186,14 +217,16 @@ class SceneReader {
   Findings& findings_;
   std::vector<ForceElementKind> kinds_;
   std::vector<Place> places_;
+  std::vector<ReadCylinder> cylinders_;
+  std::vector<ReadWinch> winches_;
   SceneDescription scene_;
   StartRequest start_;
   std::vector<Transmission> transmissions_;
-  std::vector<ContactPair> disabled_;  // by SRDFs
-  std::set<std::string> unreadable_;   // links and joints with errors, of which only the name is to be trusted
+  std::vector<ContactPair> disabled_;  // pairs whose collisions SRDF files disable
+  std::set<std::string> unreadable_;   // names of links and joints with errors; nothing else about these is reliable
 };
 
-/// The document as it is now, without parameters.
+/// Returns the document's text without its <parameter>s.
 std::string text_without_parameters(tinyxml2::XMLDocument& document) {
   tinyxml2::XMLElement& root = *document.RootElement();
   while (tinyxml2::XMLElement* parameter = root.FirstChildElement("parameter")) root.DeleteChild(parameter);
@@ -202,18 +235,18 @@ std::string text_without_parameters(tinyxml2::XMLDocument& document) {
   return printer.CStr();
 }
 
-/// @param urdf  becomes ReadResult::urdf
+/// @param urdf  output, see ReadResult::urdf
 std::optional<SceneDescription> read_scene(const std::string& text, const ReadOptions& options, Findings& findings,
                                            std::string& urdf) {
   if (text.size() > kLargestFile) {
-    findings.error(0, "file", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
+    findings.error(0, "", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
     return std::nullopt;
   }
   tinyxml2::XMLDocument document;
   if (!parse_xml(text, document, findings)) return std::nullopt;
   tinyxml2::XMLElement* root = document.RootElement();
   if (!root || std::string_view(root->Name()) != "robot") {
-    findings.error(root ? root->GetLineNum() : 0, "file", "the outermost element must be <robot>",
+    findings.error(root ? root->GetLineNum() : 0, "", "the outermost element must be <robot>",
                    root ? quoted(root->Name()) : "");
     return std::nullopt;
   }
@@ -224,14 +257,15 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   SceneDescription scene = SceneReader(options, findings).read(robot, std::move(parameters));
   if (findings.error_count() > 0) return std::nullopt;
 
-  // Each part has been judged alone; now the whole, as other programs read it.
+  // urdfdom has judged the parts one by one. Other programs give it the whole file, so let it judge that, too.
   const std::optional<std::string> refusal = refusal_of_urdfdom(printed(*root));
   if (refusal) robot.warning("programs that use urdfdom refuse this file", quoted(*refusal));
   urdf = text.find("${") == std::string::npos ? text : text_without_parameters(document);
   return scene;
 }
 
-/// The file's bytes, but not many more than a scene may have. @returns nothing, which is recorded, if it cannot be read
+/// Reads a file, but stops soon after the size that a scene may have. If the file cannot be read, records an error and
+/// returns nothing.
 std::optional<std::string> read_bytes(const std::string& path, Findings& findings) {
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -239,7 +273,7 @@ std::optional<std::string> read_bytes(const std::string& path, Findings& finding
   while (file && text.size() <= kLargestFile && file.read(part, sizeof part).gcount() > 0)
     text.append(part, static_cast<std::size_t>(file.gcount()));
   if (file || file.eof()) return text;
-  findings.error(0, "file", fmt::format("cannot be read: {}", std::strerror(errno)));
+  findings.error(0, "", fmt::format("cannot be read: {}", std::strerror(errno)));
   return std::nullopt;
 }
 
@@ -260,7 +294,7 @@ ReadResult read_scene_file(const std::string& path, const ReadOptions& options) 
   const bool is_expanded = text && expand_by_xacro(path, options.xacro_arguments, *text, findings);
   if (text && findings.error_count() == 0) result.scene = read_scene(*text, options, findings, result.urdf);
   if (is_expanded && !result.scene)
-    findings.warning(0, "file", "lines of errors are those of what xacro makes of it: xacro FILE.xacro");
+    findings.warning(0, "", "line numbers in errors refer to the output of xacro, which 'xacro FILE.xacro' prints");
   result.diagnostics = findings.take();
   return result;
 }

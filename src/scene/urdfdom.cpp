@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <mutex>
 
@@ -11,7 +12,7 @@
 namespace flexarm::scene {
 namespace {
 
-/// Takes console_bridge's messages as long as it lives.
+/// Collects console_bridge's error messages during its lifetime.
 class MessageCapture : public console_bridge::OutputHandler {
  public:
   MessageCapture() : previous_(console_bridge::getOutputHandler()), level_(console_bridge::getLogLevel()) {
@@ -36,11 +37,13 @@ class MessageCapture : public console_bridge::OutputHandler {
   console_bridge::LogLevel level_;
 };
 
-/// urdfdom logs some parts of the document as the format of printf. Nobody writes this control character.
+/// Replaces percent signs, since urdfdom passes some parts of the document to its logger as a printf format. This
+/// control character cannot occur in the document.
 constexpr char kPercent = '\x1a';
 
 struct Parsed {
-  urdf::ModelInterfaceSharedPtr model;  ///< with kPercent for each percent sign; null: it cannot be read
+  /// Has kPercent for each percent sign; null if urdfdom cannot read the document.
+  urdf::ModelInterfaceSharedPtr model;
   std::vector<std::string> errors;
 };
 
@@ -69,7 +72,7 @@ bool is_extent(double length) {
   return std::isfinite(length) && length > 0;
 }
 
-/// Nothing where it has no extent.
+/// Converts a shape. Returns nothing if its dimensions are not finite and positive.
 std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry& geometry) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
     const Vector3 size = vector(box->dim);
@@ -87,6 +90,20 @@ std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry&
   return std::nullopt;
 }
 
+/// The material with a <color> that a <visual> has: its own one, or the robot's with that name. Null if there is none.
+const tinyxml2::XMLElement* colored_material(const tinyxml2::XMLElement& visual) {
+  const tinyxml2::XMLElement* const own = visual.FirstChildElement("material");
+  if (!own || own->FirstChildElement("color")) return own;
+  const char* const name = own->Attribute("name");
+  const tinyxml2::XMLElement* const robot = visual.GetDocument()->RootElement();
+  const tinyxml2::XMLElement* named = robot ? robot->FirstChildElement("material") : nullptr;
+  for (; named; named = named->NextSiblingElement("material")) {
+    const char* const other = named->Attribute("name");
+    if (name && other && std::strcmp(name, other) == 0 && named->FirstChildElement("color")) return named;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<std::string> errors_of_urdfdom(std::string document) {
@@ -99,7 +116,10 @@ std::optional<std::string> refusal_of_urdfdom(std::string document) {
 }
 
 std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& element) {
-  const Parsed robot = parsed("<robot name=\"robot\"><link name=\"link\">" + printed(element) + "</link></robot>");
+  const tinyxml2::XMLElement* const material = colored_material(element);
+  const bool is_shared = material && material->Parent() != &element;
+  const Parsed robot = parsed("<robot name=\"robot\">" + (is_shared ? printed(*material) : "") +
+                              "<link name=\"link\">" + printed(element) + "</link></robot>");
   const urdf::LinkConstSharedPtr link = robot.model ? robot.model->getLink("link") : nullptr;
   if (!link || (!link->visual && !link->collision)) return std::nullopt;
   const urdf::GeometrySharedPtr geometry = link->visual ? link->visual->geometry : link->collision->geometry;
@@ -108,7 +128,12 @@ std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& el
   const auto& [position, rotation] = link->visual ? link->visual->origin : link->collision->origin;
   const Pose origin{vector(position), Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
   if (!shape || !origin.position.allFinite() || !origin.orientation.coeffs().allFinite()) return std::nullopt;
-  return VisualDescription{origin, *shape};
+  VisualDescription description{origin, *shape};
+  if (material && link->visual && link->visual->material) {
+    const urdf::Color& color = link->visual->material->color;
+    description.color = Color{color.r, color.g, color.b, color.a};
+  }
+  return description;
 }
 
 std::string printed(const tinyxml2::XMLElement& element) {

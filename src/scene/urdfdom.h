@@ -1,5 +1,5 @@
 #pragma once
-/// Calls urdfdom without losing its complaints.
+/// Calls urdfdom, the URDF parser of ROS, and returns the errors that it logs.
 
 #include <optional>
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace flexarm::scene {
 
-/// Has urdfdom parse a URDF document of moderate nesting in UTF-8, which must not hide characters behind references
-/// like
-/// `&#37;`: what it logs as errors, the cause before its consequences. Serialised: urdfdom logs through a global
-/// handler.
+/// Lets urdfdom parse a URDF document, and returns the errors that it logs, in order. The document must be UTF-8 with
+/// moderate nesting, without character references like `&#37;`. Calls from several threads are serialised by a mutex,
+/// since urdfdom logs through a global handler.
 std::vector<std::string> errors_of_urdfdom(std::string document);
 
-/// The first of these errors, if urdfdom gives no model for the document; nothing if it does, whatever it logs.
+/// Returns the first error if urdfdom makes no model from the document. Returns nothing if it makes one, even if it
+/// logs errors.
 std::optional<std::string> refusal_of_urdfdom(std::string document);
 
-/// What a <visual> or <collision> of a link is, of which urdfdom has nothing to complain; nothing where its shape has
-/// no extent.
+/// Reads the shape of a <visual> or <collision> of a link, with its colour. The element must be one without errors of
+/// urdfdom. Returns nothing if the shape has no extent.
 std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& element);
 
-/// The element as XML text, references only where a character could not stand for itself.
+/// Returns the element as XML text. Character references occur only where XML requires them.
 std::string printed(const tinyxml2::XMLElement& element);
 
 }  // namespace flexarm::scene

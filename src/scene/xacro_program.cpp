@@ -20,9 +20,11 @@ namespace flexarm::scene {
 namespace {
 
 constexpr const char* kXacroEnding = ".xacro";
-constexpr std::size_t kLongestComplaint = 2000;  ///< its end says what was wrong
+/// Longest message of xacro [bytes]. Only the end of a longer one is kept, which says what is wrong.
+constexpr std::size_t kLongestComplaint = 2000;
 
-/// A file in memory, which a child process writes and this one reads then: neither waits for the other.
+/// A file in memory. A child process writes it, and this process reads it after the child has ended. Unlike with a
+/// pipe, neither waits for the other.
 class Output {
  public:
   Output() : descriptor_(memfd_create("xacro", MFD_CLOEXEC)) {
@@ -46,8 +48,8 @@ class Output {
 };
 
 struct Run {
-  bool is_found = true;  ///< there is such a program
-  int status = 0;        ///< as waitpid has it
+  bool is_found = true;  ///< the program xacro exists
+  int status = 0;        ///< from waitpid()
   std::string output, complaints;
 };
 
@@ -75,7 +77,7 @@ Run run_xacro(std::vector<std::string> words) {
   return run;
 }
 
-/// In one line.
+/// Joins the lines of a message by "; ", and shortens it from its beginning.
 std::string as_line(std::string text) {
   if (text.size() > kLongestComplaint) text = "..." + text.substr(text.size() - kLongestComplaint);
   std::istringstream lines(text);
@@ -90,7 +92,8 @@ std::string end_of(const Run& run) {
                                : fmt::format("was ended by signal {}", WTERMSIG(run.status));
 }
 
-/// A launch file cannot be given ":=" within an argument of its own.
+/// Turns NAME=VALUE into xacro's NAME:=VALUE. Launch files need the first form, since the value of one of their own
+/// arguments cannot contain ":=".
 std::string as_xacro_has_it(std::string word) {
   const std::size_t equals = word.find('=');
   if (equals != std::string::npos && (equals == 0 || word[equals - 1] != ':')) word.insert(equals, ":");
@@ -106,8 +109,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 bool expand_by_xacro(const std::string& path, const std::string& arguments, std::string& text, Findings& findings) {
   if (!ends_with(path, kXacroEnding)) {
     if (!arguments.empty())
-      findings.error(0, "file",
-                     fmt::format("takes no arguments of xacro, as its name does not end with {}", kXacroEnding),
+      findings.error(0, "", fmt::format("takes no arguments of xacro, as its name does not end with {}", kXacroEnding),
                      quoted(arguments));
     return false;
   }
@@ -118,13 +120,13 @@ bool expand_by_xacro(const std::string& path, const std::string& arguments, std:
     const Run run = run_xacro(words);
     if (!run.is_found) return false;
     if (run.status != 0)
-      findings.error(0, "file", fmt::format("xacro {}: {}", end_of(run), as_line(run.complaints)));
+      findings.error(0, "", fmt::format("xacro {}: {}", end_of(run), as_line(run.complaints)));
     else if (!run.complaints.empty())
-      findings.warning(0, "file", "xacro says: " + as_line(run.complaints));
+      findings.warning(0, "", "xacro says: " + as_line(run.complaints));
     text = run.output;
     return run.status == 0;
   } catch (const std::runtime_error& error) {
-    findings.error(0, "file", fmt::format("xacro cannot be run: {}", error.what()));
+    findings.error(0, "", fmt::format("xacro cannot be run: {}", error.what()));
     return false;
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Files that xacro makes into URDF.
+/// Runs the program xacro on scene files whose names end with ".xacro".
 
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace flexarm::scene {
 
-/// Replaces the text of a file *.xacro by what the program xacro makes of it, with arguments NAME=VALUE, or NAME:=VALUE
-/// as xacro has them, that have spaces between them. Where there is no such program the text stays, and is refused as
-/// raw xacro if it is. Records what xacro complains of, and arguments for another file.
-/// @returns whether the text is xacro's
+/// Replaces the text of a file *.xacro by the output of the program xacro. `arguments`: NAME=VALUE or NAME:=VALUE,
+/// separated by spaces. If xacro is not installed, the text stays as it is, and refuse_xacro() refuses it later.
+/// Records the errors and warnings of xacro, and an error if there are arguments for a file with another ending.
+/// @returns whether `text` is the output of xacro
 bool expand_by_xacro(const std::string& path, const std::string& arguments, std::string& text, Findings& findings);
 
 }  // namespace flexarm::scene

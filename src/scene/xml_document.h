@@ -1,5 +1,5 @@
 #pragma once
-/// From bytes to an XML tree that is safe to walk.
+/// Parses XML text, and checks that the tree of elements is safe to walk.
 
 #include <string>
 
@@ -9,8 +9,8 @@
 
 namespace flexarm::scene {
 
-/// Parses `text`. On any error (not UTF-8, document type declaration, malformed, nested too deeply) records it and
-/// returns false; `document` is then not to be used.
+/// Parses `text`. If there is an error (not UTF-8, a document type declaration, too many attributes, malformed, nested
+/// too deeply), records it and returns false. The document must not be used then.
 bool parse_xml(const std::string& text, tinyxml2::XMLDocument& document, Findings& findings);
 
 }  // namespace flexarm::scene

@@ -17,14 +17,15 @@ bool contains(std::initializer_list<const char*> names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "a, b, c".
+/// Returns "a, b, c"; "nothing" if there are no names.
 std::string listed(std::initializer_list<const char*> names) {
   std::string text;
   for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
   return text.empty() ? "nothing" : text;
 }
 
-/// The words of a text; nothing where one is not a finite number or there are more than `most`.
+/// Parses numbers that are separated by white space. Returns nothing if one is not a finite number, or there are more
+/// than `most`.
 std::optional<std::vector<double>> parse_numbers(std::string_view text, std::size_t most) {
   std::vector<double> numbers;
   for (std::string_view word = next_word(text); !word.empty(); word = next_word(text)) {
@@ -88,7 +89,7 @@ void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) con
         child.xml().ShallowEqual(first->second) && child.xml().NoChildren() && first->second->NoChildren();
     const std::string expected = "at most one <" + child.tag() + "> is allowed here";
     if (is_alike) {
-      child.warning(expected + "; the other one is alike");
+      child.warning(expected + "; the two are identical");
     } else {
       child.error(expected);
     }
@@ -218,7 +219,7 @@ std::optional<TimeFunction> XmlElement::function(const char* attribute) const {
   } catch (const std::invalid_argument& problem) {
     // The message repeats the value and may itself be long.
     const tinyxml2::XMLAttribute& found = *xml_->FindAttribute(attribute);
-    findings_->error(found.GetLineNum(), description_, std::string(attribute) + " is no function of time",
+    findings_->error(found.GetLineNum(), description_, std::string(attribute) + " is not a function of time",
                      problem.what() + findings_->origin(found));
   }
   return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-/// An XML element read with typed attributes; what is wrong is recorded with its line.
+/// Reads typed attributes of an XML element, and records errors with their line.
 
 #include <initializer_list>
 #include <iterator>
@@ -14,27 +14,28 @@
 
 namespace flexarm::scene {
 
-/// A condition on numbers, and how messages put it ("radius must be > 0").
+/// A condition on numbers, and its text in messages ("radius must be > 0").
 struct NumberRange {
   const char* text;
   bool (*holds)(double);
 };
 constexpr NumberRange kAnyNumber{"a finite number", [](double) { return true; }};
-/// Of what is squared and multiplied: the product of three such numbers and two squares is finite.
+/// For numbers that are squared and multiplied: the product of three such numbers, two of them squared, is finite.
 constexpr NumberRange kModerate{"at most 1e60 in absolute value", [](double x) { return -1e60 <= x && x <= 1e60; }};
 constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
 constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
-/// Of stops: more than what a damper, however large, takes.
+/// Coefficient of restitution of stops. The lower bound excludes 0, since no finite damper absorbs the whole impact.
 constexpr NumberRange kRestitution{"from 0.05 to 1", [](double x) { return x >= 0.05 && x <= 1; }};
 constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
 
-/// A view: element and findings must outlive it.
+/// A view of an XML element. The tinyxml2 element and the Findings must outlive it.
 ///
-/// Readers of attributes return nothing (or the fallback) where an attribute is wrong, after recording why; an
-/// attribute read without fallback must be there.
+/// If an attribute is wrong, the functions that read it record an error and return nothing, or the fallback. If an
+/// attribute is missing, that is an error only without a fallback.
 class XmlElement {
  public:
-  /// `owner`: what messages call the thing that the element's children belong to ("joint 'elbow'").
+  /// `description`: name of this element in messages. `owner`: in messages, the thing that the element's children
+  /// belong to ("joint 'elbow'").
   XmlElement(const tinyxml2::XMLElement& xml, std::string description, std::string owner, Findings& findings);
 
   std::string tag() const { return xml_->Name(); }
@@ -44,45 +45,46 @@ class XmlElement {
   const tinyxml2::XMLElement& xml() const { return *xml_; }
   Findings& findings() const { return *findings_; }
 
-  /// The same element, whose children belong to `owner`.
+  /// Returns the same element with another `owner` of its children.
   XmlElement with_owner(std::string owner) const;
-  /// The same element called "<joint> 'elbow'", whose children belong to "joint 'elbow'".
+  /// Returns the same element with the description "<joint> 'elbow'" and the owner "joint 'elbow'", for example.
   XmlElement with_name(const std::string& name) const;
 
   // ---- findings about this element
   void error(std::string expected, std::string got = "") const;
   void warning(std::string expected, std::string got = "") const;
-  /// About an attribute: its line and its value are added.
+  /// Records an error about an attribute. Adds the attribute's line and value.
   void attribute_error(const char* attribute, std::string expected) const;
 
   // ---- structure
   std::vector<XmlElement> children() const;
-  /// First child of this name.
+  /// Returns the first child with this tag.
   std::optional<XmlElement> child(const char* tag) const;
-  /// Records children of these names that come twice; it is a warning where they say the same.
+  /// Records an error for each repeated child with one of these tags; only a warning if it equals the first one.
   void expect_at_most_one(std::initializer_list<const char*> tags) const;
-  /// Inside an extension element: records every attribute, child and text that is not known here.
+  /// Records an error for every other attribute and child, and for text. For elements of flexarm, which no other
+  /// program extends.
   void expect_only(std::initializer_list<const char*> attributes, std::initializer_list<const char*> tags = {}) const;
 
   // ---- attributes
   bool has(const char* attribute) const { return xml_->Attribute(attribute) != nullptr; }
   std::optional<std::string> text(const char* attribute) const;
-  /// Name of a link, joint or probe: not empty, not absurdly long, no control characters.
+  /// Reads a name, as of a link: not empty, not longer than kLongestName, without control characters.
   std::optional<std::string> name(const char* attribute) const;
   std::optional<double> number(const char* attribute, const NumberRange& range) const;
   double number(const char* attribute, const NumberRange& range, double fallback) const;
-  /// `count` numbers separated by white space.
+  /// Reads exactly `count` numbers, separated by white space.
   std::optional<std::vector<double>> numbers(const char* attribute, std::size_t count, const NumberRange& range) const;
-  /// Any count of them up to `most`.
+  /// Reads up to `most` numbers, separated by white space.
   std::optional<std::vector<double>> all_numbers(const char* attribute, std::size_t most) const;
-  /// `alternative` ends the message (" or 'auto'").
+  /// Reads a whole number. `alternative`: end of the error message (" or 'auto'").
   std::optional<int> integer(const char* attribute, int least, int most, const char* alternative = "") const;
-  /// Of moderate numbers.
+  /// Reads three numbers in the range kModerate.
   std::optional<Vector3> vector(const char* attribute) const;
   Vector3 vector(const char* attribute, const Vector3& fallback) const;
-  /// A vector of unit length from one of any length but zero.
+  /// Reads a vector, which must not be zero, and normalises it.
   std::optional<Vector3> direction(const char* attribute) const;
-  /// A function of time, finite at t = 0, as a formula or as a column of a table (see csv_table.h).
+  /// Reads a function of time: a formula, or a column of a table (see csv_table.h). It must be finite at t = 0.
   std::optional<TimeFunction> function(const char* attribute) const;
 
  private:
@@ -99,8 +101,8 @@ struct Choice {
   Value value;
 };
 
-/// The row of a table with that `name` which the attribute gives; null where it is missing or unknown, which is
-/// recorded.
+/// Returns the row of a table whose `name` is the attribute's value. If the attribute is missing or its value unknown,
+/// records an error and returns null.
 template <class Table>
 auto read_row(const XmlElement& element, const char* attribute, const Table& table) -> decltype(&*std::begin(table)) {
   const std::optional<std::string> name = element.text(attribute);
@@ -114,7 +116,8 @@ auto read_row(const XmlElement& element, const char* attribute, const Table& tab
   return nullptr;
 }
 
-/// What the attribute names among `choices`; nothing where it is missing or unknown, which is recorded.
+/// Returns the value of the choice that the attribute names. If the attribute is missing or its value unknown, records
+/// an error and returns nothing.
 template <class Value, std::size_t Count>
 std::optional<Value> read_choice(const XmlElement& element, const char* attribute,
                                  const Choice<Value> (&choices)[Count]) {
@@ -122,7 +125,7 @@ std::optional<Value> read_choice(const XmlElement& element, const char* attribut
   return choice ? std::optional<Value>(choice->value) : std::nullopt;
 }
 
-/// The same for an attribute that may be left out.
+/// The same for an optional attribute, with a `fallback` if it is missing.
 template <class Value, std::size_t Count>
 Value read_choice(const XmlElement& element, const char* attribute, const Choice<Value> (&choices)[Count],
                   Value fallback) {

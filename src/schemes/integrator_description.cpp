@@ -16,7 +16,7 @@ bool takes(std::string_view name, Option option) {
   return std::any_of(found.begin(), found.end(), [&](const Scheme* scheme) { return scheme->options.*option; });
 }
 
-/// "auto, edmc1, edmc2"
+/// Names of all schemes with this option: "auto, edmc1, edmc2".
 std::string owners(Option option) {
   std::vector<std::string_view> names = scheme_names();
   names.erase(std::remove_if(names.begin(), names.end(), [&](std::string_view name) { return !takes(name, option); }),
@@ -24,7 +24,7 @@ std::string owners(Option option) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// It interpolates in a way of its own, of which a scene cannot say anything.
+/// Whether the scheme has a fixed interpolation of its own, which a scene cannot change.
 bool has_own_interpolation(std::string_view name) {
   const std::vector<const Scheme*> found = meanings(name);
   return !found.empty() && found.front()->interpolation != Interpolation::Local;
@@ -76,10 +76,10 @@ std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integr
   const bool is_additive = integrator.weak_form == WeakForm::Additive;
   require(!is_additive || takes(scheme, &SchemeOptions::additive), "weak_form",
           "the additive form does not conserve momenta; it belongs to " + owners(&SchemeOptions::additive));
-  const bool has_substitute =
-      takes(scheme, &SchemeOptions::substitute) && integrator.rho_infinity.value_or(1) >= 1;  // "auto" is edmc2 below
+  const bool has_substitute = takes(scheme, &SchemeOptions::substitute) &&
+                              integrator.rho_infinity.value_or(1) >= 1;  // "auto" with rho < 1: edmc2
   require(integrator.on_failure == OnFailure::Stop || has_substitute, "on_failure",
-          "edmc2 cannot go on from states of scheme '" + scheme +
+          "edmc2 cannot continue from states of scheme '" + scheme +
               "', or is the scheme itself; 'dissipate' belongs to " + owners(&SchemeOptions::substitute));
   require(!is_additive || interpolation == Interpolation::Total, "weak_form",
           "the additive form needs interpolation=\"total\"");

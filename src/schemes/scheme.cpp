@@ -8,14 +8,15 @@ namespace flexarm {
 
 NumericalDissipation numerical_dissipation(int order, double rho, double step) {
   if (rho >= 1) return {};
-  // In p = (z - 1)/(z + 1), z the factor per step, the infinitely stiff spring has all its roots at -P.
+  // With p = (z - 1)/(z + 1), where z is the amplification factor per step: all roots of an infinitely stiff spring are
+  // at -P.
   const double P = (1 + rho) / (1 - rho);
   if (order == 1) return {1 / P, 0, 0.25 * step * step / (P * P)};
   return {4 / (3 * P * (3 + P)), 2 * P / (3 + P), step * step / (12 * P * P)};
 }
 
 std::vector<const Scheme*> meanings(std::string_view name) {
-  // Without and with numerical dissipation.
+  // "auto" without and with numerical dissipation.
   if (name == "auto") return {meanings("em").front(), meanings("edmc2").front()};
   for (const Scheme& scheme : schemes())
     if (scheme.name == name) return {&scheme};

@@ -1,5 +1,5 @@
 #pragma once
-/// The time integration schemes as data.
+/// The time integration schemes as data: a scheme is a row of rules and options, found by its name.
 
 #include <optional>
 #include <string_view>
@@ -9,53 +9,54 @@
 
 namespace flexarm {
 
-/// Spectral radius at infinite frequency of the dissipative schemes where a scene does not say it.
+/// Default spectral radius at infinite frequency, for the dissipative schemes.
 constexpr double kDefaultRho = 0.8;
 
-/// Steps that a contact with a stop lasts.
+/// Duration of a contact with a stop, in steps.
 constexpr double kContactSteps = 10;
 
-/// Options of <integrator> that only some schemes take.
+/// Options of <integrator> that only some schemes have.
 struct SchemeOptions {
   bool beta = false, gamma = false, alpha = false, rho_infinity = false;
-  bool interpolation = false;  ///< others than the local one
-  bool iterative = false;      ///< among them the one from iterate to iterate
+  bool interpolation = false;  ///< interpolations other than Interpolation::Local
+  bool iterative = false;      ///< Interpolation::Iterative; requires `interpolation`
   bool additive = false;       ///< WeakForm::Additive
-  bool substitute = false;     ///< OnFailure::Dissipate: its state is one that edmc2 can go on from, and back
+  bool substitute = false;     ///< OnFailure::Dissipate: edmc2 can continue from its states, and it from those of edmc2
 };
 
-/// Steps of second order, one of them backwards, that make one of a composition (Suzuki 1990).
+/// Number of second-order sub-steps of a composed step; one of them is backwards (Suzuki 1990).
 constexpr int kCompositionSteps = 5;
 
-/// A scheme by name: its rule for the elements, what it claims, and what a scene may say of it.
+/// A scheme by name: its rule for the elements, its properties, and the options that a scene can set.
 struct Scheme : TimeRule {
   std::string_view name, description;
   bool conserves_energy = false, conserves_momenta = false;
-  int order = 2;                    ///< in time
-  bool is_composition = false;      ///< sub-steps of a symmetric second-order step: order four
-  bool heeds_slide_schemes = true;  ///< else the contact of all sliders is carried by SM-EM
-  /// Of what touches a stop [s]: resolved by the scene's steps, and short to the eye.
+  int order = 2;                    ///< order of accuracy in time
+  bool is_composition = false;      ///< fourth order by sub-steps of a symmetric second-order scheme
+  bool heeds_slide_schemes = true;  ///< use the schemes that sliders name; false: SM-EM for all sliders
+  /// Duration of a contact with a stop [s]. Long enough to be resolved by the scene's steps, short enough to be
+  /// invisible.
   double contact_time = kContactSteps * IntegratorDescription().step;
-  bool may_be_planar = true;  ///< else all is three-dimensional, the scene of a plane, too
+  bool may_be_planar = true;  ///< steps may be taken in a plane; false: always three-dimensional
   SchemeOptions options;
 
   int solves_per_step() const { return is_composition ? kCompositionSteps : 1; }
 };
 
-/// All schemes with their default options, the default scheme first.
+/// All schemes with their default options; the default scheme is the first.
 const std::vector<Scheme>& schemes();
-/// By name, default options; "auto" is the default scheme. Empty if unknown.
+/// The scheme with that name and default options; "auto" is the default scheme. Empty if the name is unknown.
 std::optional<Scheme> find_scheme(std::string_view name);
-/// The rule by which a scheme's interpolation finds equilibria: forces at the configuration, nothing moves.
+/// The static rule with the scheme's interpolation, for equilibria: forces in one configuration, without motion.
 Scheme statics_of(Scheme scheme);
-/// Those of the table that a name in a scene may mean: several for "auto", none if unknown.
+/// All schemes that a name in a scene can stand for: two for "auto", none if the name is unknown.
 std::vector<const Scheme*> meanings(std::string_view name);
-/// With the options of <integrator>; "auto" becomes edmc2 where rho_infinity asks for numerical dissipation.
+/// The scheme with the options of <integrator>. "auto" becomes edmc2 if rho_infinity requests numerical dissipation.
 /// @throws ModelError naming the option that does not suit the scheme, or an unknown scheme.
 Scheme make_scheme(const IntegratorDescription& integrator);
 
-/// Coefficients for a spectral radius rho_infinity in [0, 1] at infinite frequency, of first or second order, for steps
-/// of the given length [s].
+/// Coefficients of numerical dissipation for a spectral radius rho_infinity in [0, 1] at infinite frequency. `order`: 1
+/// or 2; `step`: step size [s].
 NumericalDissipation numerical_dissipation(int order, double rho_infinity, double step);
 
 }  // namespace flexarm

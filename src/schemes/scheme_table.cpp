@@ -1,4 +1,4 @@
-// One row for each scheme: its name, what it is made of, what is said of it.
+// The table of schemes: one row per scheme, with its name, its traits and a description.
 #include "schemes/scheme.h"
 
 namespace flexarm {
@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kDefaultAlpha = -0.05;
 
-/// Something that schemes have in common; a row lists what its scheme is made of, the family first.
+/// A property that several schemes share. A row lists the traits of its scheme, the family first.
 using Trait = void (*)(Scheme&);
 
 // ---------------------------------------------------------------- families
@@ -17,7 +17,7 @@ void energy_momentum(Scheme& scheme) {
   scheme.options.substitute = true;
 }
 
-/// Rotary inertia at the mass points, moments by T(omega).
+/// Rotary inertia at the mass points, moments by T(omega) (see StressRule).
 void exponential(Scheme& scheme) {
   scheme.stress = StressRule::ExponentialMoment;
   scheme.beam_rotation = scheme.body_rotation = RotationRule::Unscaled;
@@ -26,7 +26,7 @@ void exponential(Scheme& scheme) {
   scheme.options.interpolation = scheme.options.iterative = true;
 }
 
-/// The same by S(w).
+/// As exponential(), with moments by S(w).
 void cayley(Scheme& scheme) {
   exponential(scheme);
   scheme.stress = StressRule::CayleyMoment;
@@ -42,7 +42,8 @@ void end_point(Scheme& scheme) {
 
 // ---------------------------------------------------------------- energy
 
-/// Bodies take the tangent-scaled rule: it is what the increments conjugate to the residual ask for.
+/// With an energy correction, bodies use the tangent-scaled rule, because the increments conjugate to the residual
+/// require it.
 template <EnergyCorrection correction>
 void corrected(Scheme& scheme) {
   scheme.correction = correction;
@@ -64,7 +65,7 @@ void backward(Scheme& scheme) {
   scheme.order = 1;
 }
 
-/// Its interpolation is a part of its energy balance: a scene cannot choose another one.
+/// The interpolation is a part of the scheme's energy balance, so that a scene cannot choose another one.
 void cayley_interpolated(Scheme& scheme) {
   scheme.interpolation = Interpolation::Incremental;
   scheme.cayley_interpolation = scheme.conserves_energy = true;
@@ -80,7 +81,7 @@ void symmetric(Scheme& scheme) {
 void composed(Scheme& scheme) {
   scheme.is_composition = true;
   scheme.order = 4;
-  scheme.damping_relaxation = 0;  // its effect is of second order in the scene's step, not in those composed
+  scheme.damping_relaxation = 0;  // its effect is of second order in the scene's step and would spoil the fourth order
 }
 
 void newmark(Scheme& scheme) {
@@ -92,7 +93,7 @@ void hht(Scheme& scheme) {
   scheme.hht = form;
   scheme.set_alpha(kDefaultAlpha);
   scheme.options.alpha = true;
-  if (form == HhtForm::Kinematics) scheme.options.iterative = false;  // it follows one configuration, not two
+  if (form == HhtForm::Kinematics) scheme.options.iterative = false;  // it evaluates two configurations per iterate
 }
 
 struct Row {

@@ -1,5 +1,5 @@
 #pragma once
-/// The ways to carry the contact of a slider over a step, as data.
+/// Schemes for the sliding contact of a slider over a step, as data.
 
 #include <array>
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace flexarm {
 
-/// A value of <slide scheme="...">: one of the thesis's strategies (Muñoz 2004, ch. 12; joints.md 4.4). `sme` is SM-EM
-/// on beams of scheme std (4.6).
+/// A value of <slide scheme="...">: one of the strategies in the thesis (Muñoz 2004, ch. 12; docs/notes/joints.md 4.4).
+/// `sme` is SM-EM for beams of scheme std (4.6).
 struct SlideScheme {
   std::string_view name;
-  std::string_view owner;  ///< the only conserving scheme that it goes with; empty: all
+  std::string_view owner;  ///< the only conserving scheme that supports it; empty: all do
   SlideAlgorithm algorithm;
 };
 
-/// The default first.
+/// All slide schemes; the first is the default.
 constexpr std::array<SlideScheme, 6> kSlideSchemes = {{
     {"sm_em", "", {SlideStep::SmEm, SlideStep::SmEm}},
     {"alg1", "m1", {SlideStep::MidContact, SlideStep::EnterEnd}},
@@ -28,11 +28,11 @@ constexpr std::array<SlideScheme, 6> kSlideSchemes = {{
     {"sme", "std", {SlideStep::SmEm, SlideStep::SmEm}},
 }};
 
-/// By name; null if unknown.
+/// The slide scheme with that name; null if it is unknown.
 const SlideScheme* find_slide_scheme(std::string_view name);
 
-/// Why it does not go with an integration scheme; empty if it does. The Newmark family folds sliders by their exact
-/// variation, whatever this says.
+/// Why a slide scheme does not suit an integration scheme; empty if it does. The Newmark family accepts all of them,
+/// since it ignores this choice and folds sliders by their exact variation.
 std::string slide_scheme_conflict(const SlideScheme& slide, const Scheme& scheme);
 
 }  // namespace flexarm

@@ -11,10 +11,10 @@
 namespace flexarm {
 namespace {
 
-/// A thread with nothing to do checks again after this time: waking it for every row would cost the other thread more
-/// than handing over the row.
+/// How long a thread sleeps before it looks at the ring again. Waking the writing thread for every row would cost the
+/// simulating thread more than handing over the row.
 constexpr std::chrono::microseconds kPause{200};
-/// Number of states on their way to the writer.
+/// Capacity of the rings: as many states as kMostBytes holds, but at least kFewest and at most kMost.
 constexpr std::size_t kMostBytes = 1 << 22;
 constexpr std::size_t kFewest = 16, kMost = 1024;
 
@@ -24,7 +24,8 @@ std::size_t entries_for(const State& state) {
   return std::clamp(kMostBytes / (numbers * sizeof(double)), kFewest, kMost);
 }
 
-/// While it exists, this thread and threads that it starts get no signals, which are for the main thread.
+/// While an object of this class exists, its thread and the threads that it starts get no signals: the main thread
+/// handles them.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -69,7 +70,7 @@ void BackgroundWriter::note_step(const Simulation& simulation, const StepResult&
   entry.is_step = true;
   entry.result = result;
   step_waits_ = true;
-  if (!looks_at_steps()) return;  // one entry with the row after it costs less
+  if (!looks_at_steps()) return;  // the step shares an entry with the row after it, which costs less
   entry.has_state = true;
   entry.state = snapshot_of(simulation);
   push_step();
@@ -97,8 +98,8 @@ BackgroundWriter::Entry& BackgroundWriter::next_entry() {
   return entry;
 }
 
-/// Uses the memory that came back last, which is still in the processor's cache: going round all entries of the ring
-/// would take three times as long.
+/// Reuses the memory that came back last, which is still in the processor's cache. Cycling through all entries of the
+/// ring would take three times as long.
 Snapshot BackgroundWriter::snapshot_of(const Simulation& simulation) {
   for (; !returned_.empty(); returned_.pop()) free_.push_back(std::move(returned_.front()));
   Snapshot snapshot;

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes results in a separate thread while the simulation goes on.
+/// Writes results in a separate thread while the simulation goes on stepping.
 
 #include <atomic>
 #include <exception>
@@ -13,11 +13,11 @@
 
 namespace flexarm {
 
-/// Hands all rows to another writer, in the same order, from copies of the states. A simulation that is ahead of the
-/// writer by more than some rows waits for it. If the writer fails, the next call throws its error.
+/// Passes all rows on to another writer, in the same order, from copies of the states. If the simulation is ahead of
+/// the writer by more rows than the buffer holds, it waits. If the writer fails, the next call throws its error.
 class BackgroundWriter : public ResultWriter {
  public:
-  /// Makes the writer, for the mirror that it will read, a simulation that never steps.
+  /// Makes the other writer. `shown` is the simulation that it will read: a copy that never steps.
   using MakeWriter = std::function<std::unique_ptr<ResultWriter>(const Simulation& shown)>;
 
   BackgroundWriter(const Simulation& simulation, const MakeWriter& make_writer);
@@ -31,14 +31,14 @@ class BackgroundWriter : public ResultWriter {
 
  private:
   struct Entry {
-    bool is_step = false, is_row = false;  // or a step and the row after it
+    bool is_step = false, is_row = false;  // a step, a row, or a step and the row after it
     StepResult result;                     // of the step
     bool has_state = false;
     Snapshot state;
   };
 
   Entry& next_entry();
-  /// A step that waits for its row.
+  /// Hands over the step that waits for its row, if there is one.
   void push_step();
   Snapshot snapshot_of(const Simulation& simulation);
   void throw_error();
@@ -46,14 +46,14 @@ class BackgroundWriter : public ResultWriter {
   void write_entries();
   void write(Entry& entry);
 
-  Simulation mirror_;  // never steps: what the writer looks at
+  Simulation mirror_;  // a copy that never steps; the writer reads it
   std::unique_ptr<ResultWriter> writer_;
   SpscRing<Entry> ring_;
-  SpscRing<Snapshot> returned_;  // memory, by the thread that writes
-  std::vector<Snapshot> free_;   // memory, what came back last at the end
-  bool step_waits_ = false;      // in the next free entry
+  SpscRing<Snapshot> returned_;  // memory that the writing thread gives back
+  std::vector<Snapshot> free_;   // memory to reuse, the most recently returned last
+  bool step_waits_ = false;      // whether the next free entry already has a step
   std::atomic<bool> is_over_{false}, has_failed_{false};
-  std::exception_ptr error_;  // once it has failed
+  std::exception_ptr error_;  // set once has_failed_ is true
   std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Values at points of a beam, from its elements.
+/// Values at points of a beam, computed from its elements.
 
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// Visits an element of a beam by its index in the group of its order.
+/// Calls `visit` with an element of a beam. `index` counts the beam's elements along its line.
 template <class Visit>
 void visit_element(const Model& model, const BeamLink& beam, int index, const Visit& visit) {
   for_each_group(model.beams, [&](const auto& group) {
@@ -17,7 +17,8 @@ void visit_element(const Model& model, const BeamLink& beam, int index, const Vi
   });
 }
 
-/// Value at xi of the polynomial through the values at the stiffness points, where stress is most accurate.
+/// Weights by which values at the stiffness points, where stress is most accurate, give the value at xi of the
+/// polynomial through them.
 template <int Nodes>
 std::array<double, Nodes - 1> extension_weights(double xi) {
   const auto& abscissa = GaussLegendre<Nodes - 1>::points;

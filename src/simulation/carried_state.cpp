@@ -15,34 +15,12 @@
 namespace flexarm {
 namespace {
 
-/// Offsets in a body that differ by less are the same, over the model's length scale and in rad.
-constexpr double kSamePlace = 1e-14;
-
-bool is_same_place(const Pose& a, const Pose& b, double length) {
-  return (a.position - b.position).norm() <= kSamePlace * length &&
-         a.orientation.angularDistance(b.orientation) <= 1e-7 &&
-         (a.orientation.coeffs() - b.orientation.coeffs()).norm() <= kSamePlace;
-}
-
-/// Per thing of the one list the index of that with the same name in the other one, or -1.
-template <class Things>
-std::vector<int> same_names(const Things& before, const Things& after) {
-  std::map<std::string, int> indices;
-  for (std::size_t i = 0; i < before.size(); ++i) indices.emplace(before[i].name, static_cast<int>(i));
-  std::vector<int> out;
-  for (const auto& thing : after) {
-    const auto found = indices.find(thing.name);
-    out.push_back(found == indices.end() ? -1 : found->second);
-  }
-  return out;
-}
-
 template <class Value>
 void take(const std::vector<Value>& from, int old, std::vector<Value>& to, std::size_t own) {
   if (old >= 0 && static_cast<std::size_t>(old) < from.size() && own < to.size()) to[own] = from[old];
 }
 
-/// `width` numbers for each thing.
+/// Copies the means of all items that have an old index, with `width` numbers for each item.
 void take_means(const StepMeans& from, const std::vector<int>& old_of, std::size_t width, StepMeans& to) {
   to.count = from.count;
   to.durations = from.durations;
@@ -58,25 +36,15 @@ class Carrier {
  public:
   Carrier(const ModelOfScene& before, const State& state, const ModelOfScene& after,
           const std::set<std::string>& touched)
-      : old_(before.model),
-        state_(state),
-        new_(after.model),
-        links_(same_names(old_.links, new_.links)),
-        coordinates_(same_names(old_.coordinates, new_.coordinates)),
-        sensors_(same_names(before.scene.sensors, after.scene.sensors)),
-        nodes_(new_.nodes.size(), -1),
-        stiffness_points_(new_.stiffness_point_count, -1),
-        mass_points_(new_.mass_point_count, -1) {
+      : old_(before.model), state_(state), new_(after.model), same_(before, after) {
     origin_ = new_.floats ? Vector3(world_origin(old_, state_) - new_.origin) : new_.initial_origin;
-    find_nodes();
-    find_points();
     find_touched(touched);
   }
 
   State carry(const std::function<void(State&)>& begin) {
     Model placed = new_;
     place(placed);
-    State out = initial_state(placed);
+    State out = initial_state(placed, state_.time);
     overlay(out);
     begin(out);
     overlay(out);
@@ -84,56 +52,7 @@ class Carrier {
   }
 
  private:
-  // ---------------------------------------------------------------- what is the same
-
-  void find_nodes() {
-    std::vector<bool> is_body(new_.nodes.size(), false);  // decided by a rigid link
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const LinkFrame& now = new_.links[i];
-      if (!now.beam && now.frame.node >= 0) is_body[now.frame.node] = true;
-      if (links_[i] < 0 || now.frame.node < 0) continue;
-      const LinkFrame& then = old_.links[links_[i]];
-      if (now.beam)
-        for (int k = 0; now.frame.node + k <= now.beam->tip.node; ++k) nodes_[now.frame.node + k] = then.frame.node + k;
-      else if (then.frame.node >= 0 && nodes_[now.frame.node] < 0 &&
-               is_same_place(now.frame.offset, then.frame.offset, new_.length_scale))
-        nodes_[now.frame.node] = then.frame.node;
-    }
-    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
-      const int joint = new_.coordinates[c].joint;
-      if (coordinates_[c] < 0 || new_.joints.is_held(joint)) continue;
-      const int then = old_.coordinates[coordinates_[c]].joint, slave = new_.joints[joint].slave;
-      if (!old_.joints.is_held(then) && nodes_[slave] < 0 && !is_body[slave]) nodes_[slave] = old_.joints[then].slave;
-    }
-    for (const JointMap& joint : new_.joints) {
-      if (joint.kind != JointMapKind::Rigid || nodes_[joint.slave] >= 0 || is_body[joint.slave]) continue;
-      const int master = joint.master < 0 ? -1 : nodes_[joint.master];
-      if (joint.master >= 0 && master < 0) continue;
-      for (const JointMap& then : old_.joints)
-        if (then.kind == JointMapKind::Rigid && then.master == master &&
-            is_same_place({joint.origin.position, joint.slave_orientation},
-                          {then.origin.position, then.slave_orientation}, new_.length_scale))
-          nodes_[joint.slave] = then.slave;
-    }
-  }
-
-  void find_points() {
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      if (links_[i] < 0 || !new_.links[i].beam) continue;
-      const BeamLink &now = *new_.links[i].beam, &then = *old_.links[links_[i]].beam;
-      for_each_group(new_.beams, [&](const auto& group) {
-        using Group = std::decay_t<decltype(group)>;
-        if (Group::kNodes != now.order + 1) return;
-        const auto& elements = std::get<Group>(old_.beams).elements;
-        for (std::size_t k = 0; k < now.elements.size(); ++k) {
-          const auto &own = group.elements[now.elements[k]], &other = elements[then.elements[k]];
-          for (int p = 0; p < own.kStiffnessPoints; ++p)
-            stiffness_points_[own.first_stiffness_point + p] = other.first_stiffness_point + p;
-          for (int p = 0; p < own.kMassPoints; ++p) mass_points_[own.first_mass_point + p] = other.first_mass_point + p;
-        }
-      });
-    }
-  }
+  // ---------------------------------------------------------------- trees in which nodes were attached or detached
 
   int top_of(int node) const {
     while (node >= 0 && new_.node_parents[node] >= 0) node = new_.node_parents[node];
@@ -144,32 +63,33 @@ class Carrier {
     std::set<int> tops;
     for (const LinkFrame& link : new_.links)
       if (touched.count(link.name) > 0 && link.frame.node >= 0) tops.insert(top_of(link.frame.node));
-    for (std::size_t i = 0; i < nodes_.size(); ++i) is_touched_.push_back(tops.count(top_of(static_cast<int>(i))) > 0);
+    for (std::size_t i = 0; i < same_.nodes.size(); ++i)
+      is_touched_.push_back(tops.count(top_of(static_cast<int>(i))) > 0);
     for_each_element(new_.beams, [&](const auto& element) {
       for (int p = 0; p < element.kMassPoints; ++p)
         if (is_touched_[element.nodes[0]]) touched_points_.insert(element.first_mass_point + p);
     });
   }
 
-  // ---------------------------------------------------------------- where it is
+  // ---------------------------------------------------------------- positions and velocities
 
-  /// By which positions of nodes are others.
+  /// The translation from positions in the old state to positions in the new one, since their origins differ.
   Vector3 shift() const { return world_origin(old_, state_) - (new_.origin + origin_); }
 
   void place(Model& placed) const {
     placed.initial_origin = origin_;
     const Vector3 of_new = new_.initial_origin - origin_, of_old = shift();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    for (std::size_t i = 0; i < same_.nodes.size(); ++i) {
       placed.nodes[i].position += of_new;
-      if (nodes_[i] < 0) continue;
-      placed.nodes[i] = node_pose(state_.nodes[nodes_[i]]);
+      if (same_.nodes[i] < 0) continue;
+      placed.nodes[i] = node_pose(state_.nodes[same_.nodes[i]]);
       placed.nodes[i].position += of_old;
-      placed.initial_velocity[i] = spatial_velocity(state_.nodes[nodes_[i]]);
+      placed.initial_velocity[i] = spatial_velocity(state_.nodes[same_.nodes[i]]);
     }
-    for (std::size_t i = 0; i < links_.size(); ++i) place_body(i, placed);
+    for (std::size_t i = 0; i < same_.links.size(); ++i) place_body(i, placed);
     for (int j = 0; j < static_cast<int>(new_.joints.size()); ++j) {
       const JointMap& joint = new_.joints[j];
-      if (joint.kind != JointMapKind::Rigid || nodes_[joint.slave] >= 0) continue;
+      if (joint.kind != JointMapKind::Rigid || same_.nodes[joint.slave] >= 0) continue;
       placed.nodes[joint.slave] = slave_pose(placed, j, placed.nodes, placed.initial_released[j]);
       placed.initial_velocity[joint.slave] =
           slave_velocity(placed, j, placed.nodes, placed.initial_released[j], placed.initial_velocity)
@@ -179,7 +99,8 @@ class Carrier {
     release(placed);
   }
 
-  /// The node that has the mass of a rigid link, one beside it where that is a beam's; -1: the world.
+  /// The node that carries the mass of a rigid link; -1: the world. If the link's frame is on a node of a beam, the
+  /// mass may be at another node, rigidly joined to that one.
   static int body_node(const Model& model, const LinkFrame& link) {
     for (const JointMap& joint : model.joints)
       if (joint.kind == JointMapKind::Rigid && link.frame.node >= 0 && joint.master == link.frame.node &&
@@ -188,13 +109,14 @@ class Carrier {
     return link.frame.node;
   }
 
-  /// Schemes may let centres of mass move a little beside the joints that hold them: momenta are theirs.
+  /// Sets the velocities of bodies from the momenta of the old bodies, not from the joints: a scheme may let a centre
+  /// of mass deviate a little from the joint that holds it.
   void move_bodies(Model& placed) const {
-    std::map<int, std::set<int>> parts;  // old nodes, by the new one
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      if (links_[i] < 0 || new_.links[i].beam) continue;
-      const int now = body_node(new_, new_.links[i]), then = body_node(old_, old_.links[links_[i]]);
-      if (now >= 0 && then >= 0 && nodes_[now] < 0 && new_.inertias[now].mass > 0 && old_.inertias[then].mass > 0)
+    std::map<int, std::set<int>> parts;  // for each new node, the old nodes whose bodies it unites
+    for (std::size_t i = 0; i < same_.links.size(); ++i) {
+      if (same_.links[i] < 0 || new_.links[i].beam) continue;
+      const int now = body_node(new_, new_.links[i]), then = body_node(old_, old_.links[same_.links[i]]);
+      if (now >= 0 && then >= 0 && same_.nodes[now] < 0 && new_.inertias[now].mass > 0 && old_.inertias[then].mass > 0)
         parts[now].insert(then);
     }
     for (const auto& [node, bodies] : parts) {
@@ -207,7 +129,8 @@ class Carrier {
         const NodalInertia& part = old_.inertias[body];
         const Matrix3 turn = own.orientation.toRotationMatrix(), rotary = turn * part.rotary * turn.transpose();
         const Vector3 arm = own.position - place, turning = own.orientation * own.angular_velocity;
-        // Of a part of a body the velocity is that of its place; of several bodies their momenta count.
+        // If there is one old body, its velocity is taken at the new node's place, since the new body may be a part of
+        // it. If there are several, their momenta are added.
         const Vector3 velocity = bodies.size() > 1 ? own.velocity : Vector3(own.velocity - turning.cross(arm));
         mass += part.mass;
         momentum += part.mass * velocity;
@@ -227,11 +150,11 @@ class Carrier {
     }
   }
 
-  /// The node of a rigid link that is elsewhere in its body now.
+  /// Places the node of a rigid link whose node is now at another place of its body.
   void place_body(std::size_t link, Model& placed) const {
     const Attachment& now = new_.links[link].frame;
-    if (links_[link] < 0 || now.node < 0 || nodes_[now.node] >= 0 || new_.links[link].beam) return;
-    const Attachment& then = old_.links[links_[link]].frame;
+    if (same_.links[link] < 0 || now.node < 0 || same_.nodes[now.node] >= 0 || new_.links[link].beam) return;
+    const Attachment& then = old_.links[same_.links[link]].frame;
     Pose frame = attached_pose(state_, then);
     frame.position += then.node < 0 ? Vector3(old_.origin - (new_.origin + origin_)) : shift();
     const Pose pose = frame * now.offset.inverse();
@@ -247,9 +170,9 @@ class Carrier {
 
   void release(Model& placed) const {
     std::vector<bool> is_known(new_.joints.size_with_held(), false);
-    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
-      if (coordinates_[c] < 0) continue;
-      const int joint = new_.coordinates[c].joint, then = old_.coordinates[coordinates_[c]].joint;
+    for (std::size_t c = 0; c < same_.coordinates.size(); ++c) {
+      if (same_.coordinates[c] < 0) continue;
+      const int joint = new_.coordinates[c].joint, then = old_.coordinates[same_.coordinates[c]].joint;
       if (is_known[joint]) continue;
       is_known[joint] = true;
       const JointMap &map = new_.joints[joint], &other = old_.joints[then];
@@ -271,7 +194,7 @@ class Carrier {
     }
   }
 
-  // ---------------------------------------------------------------- what it remembers
+  // ---------------------------------------------------------------- what a state remembers
 
   void overlay(State& out) const {
     out.time = state_.time;
@@ -289,10 +212,26 @@ class Carrier {
     for (const NodalLoad& wrench : state_.wrenches) add_wrench(wrench, out);
   }
 
+  /// Whether it is known for all nodes what joints transmitted to them in the last step. It is not known in a tree to
+  /// which something was attached or from which something was detached, but nothing is transmitted to a free body.
+  bool knows_reactions() const {
+    std::vector<int> sizes(same_.nodes.size(), 0);
+    for (std::size_t i = 0; i < sizes.size(); ++i) ++sizes[top_of(static_cast<int>(i))];
+    std::vector<bool> is_held(same_.nodes.size(), false);
+    for (const JointMap& joint : new_.joints)
+      if (joint.kind != JointMapKind::Free || joint.master >= 0) is_held[joint.slave] = true;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const bool is_free_body = sizes[i] == 1 && !is_held[i];
+      if (!is_free_body && (same_.nodes[i] < 0 || is_touched_[i])) return false;
+    }
+    return !state_.reactions.empty();
+  }
+
   void overlay_nodes(State& out) const {
+    if (knows_reactions()) out.reactions.assign(same_.nodes.size(), Vector6::Zero());
     const std::size_t points = new_.mass_point_count, old_points = old_.mass_point_count;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const int old = nodes_[i];
+    for (std::size_t i = 0; i < same_.nodes.size(); ++i) {
+      const int old = same_.nodes[i];
       if (old < 0) continue;
       const NodeState found = out.nodes[i];
       out.nodes[i] = state_.nodes[old];
@@ -312,32 +251,32 @@ class Carrier {
   }
 
   void overlay_points(State& out) const {
-    for (std::size_t i = 0; i < stiffness_points_.size(); ++i) {
-      take(state_.strain_rates, stiffness_points_[i], out.strain_rates, i);
-      take(state_.strain_memory, stiffness_points_[i], out.strain_memory, i);
-      take(state_.stiffness_rotations, stiffness_points_[i], out.stiffness_rotations, i);
+    for (std::size_t i = 0; i < same_.stiffness_points.size(); ++i) {
+      take(state_.strain_rates, same_.stiffness_points[i], out.strain_rates, i);
+      take(state_.strain_memory, same_.stiffness_points[i], out.strain_memory, i);
+      take(state_.stiffness_rotations, same_.stiffness_points[i], out.stiffness_rotations, i);
     }
-    for (std::size_t i = 0; i < mass_points_.size(); ++i) {
-      if (mass_points_[i] < 0) continue;
+    for (std::size_t i = 0; i < same_.mass_points.size(); ++i) {
+      if (same_.mass_points[i] < 0) continue;
       const Vector3 found = out.mass_points[i].angular_acceleration;
-      out.mass_points[i] = state_.mass_points[mass_points_[i]];
-      take(state_.mass_rotations, mass_points_[i], out.mass_rotations, i);
+      out.mass_points[i] = state_.mass_points[same_.mass_points[i]];
+      take(state_.mass_rotations, same_.mass_points[i], out.mass_rotations, i);
       if (touched_points_.count(static_cast<int>(i)) > 0)
         out.mass_points[i].angular_acceleration = found;
       else if (!out.momentum_rates.empty() && !state_.momentum_rates.empty())
-        out.momentum_rates[i] = state_.momentum_rates[mass_points_[i]];
+        out.momentum_rates[i] = state_.momentum_rates[same_.mass_points[i]];
     }
   }
 
   void overlay_coordinates(State& out) const {
-    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
-      take(state_.commands, coordinates_[c], out.commands, c);
-      take(state_.efforts, coordinates_[c], out.efforts, c);
-      take(state_.rests, coordinates_[c], out.rests, c);
+    for (std::size_t c = 0; c < same_.coordinates.size(); ++c) {
+      take(state_.commands, same_.coordinates[c], out.commands, c);
+      take(state_.efforts, same_.coordinates[c], out.efforts, c);
+      take(state_.rests, same_.coordinates[c], out.rests, c);
     }
-    take_means(state_.drives, coordinates_, 1, out.drives);
+    take_means(state_.drives, same_.coordinates, 1, out.drives);
     for (std::size_t i = 0; i < new_.actuators.size(); ++i) {
-      const int coordinate = coordinates_[new_.actuators[i].coordinate];
+      const int coordinate = same_.coordinates[new_.actuators[i].coordinate];
       const int old = coordinate < 0 ? -1 : old_.coordinates[coordinate].actuator;
       if (old < 0 || state_.actuators[old].servo.outputs.size() != out.actuators[i].servo.outputs.size()) continue;
       out.actuators[i] = state_.actuators[old];
@@ -346,10 +285,10 @@ class Carrier {
 
   void overlay_sensors(State& out) const {
     std::vector<int> reactions(new_.reactions.size(), -1);
-    for (std::size_t i = 0; i < sensors_.size(); ++i) {
-      if (sensors_[i] < 0) continue;
-      take(state_.samples, sensors_[i], out.samples, i);
-      const int own = new_.sensors[i].reaction, old = old_.sensors[sensors_[i]].reaction;
+    for (std::size_t i = 0; i < same_.sensors.size(); ++i) {
+      if (same_.sensors[i] < 0) continue;
+      take(state_.samples, same_.sensors[i], out.samples, i);
+      const int own = new_.sensors[i].reaction, old = old_.sensors[same_.sensors[i]].reaction;
       if (own >= 0 && old >= 0) reactions[own] = old;
     }
     take_means(state_.transmitted, reactions, 6, out.transmitted);
@@ -358,7 +297,7 @@ class Carrier {
         out.last_transmitted[6 * i + k] = state_.last_transmitted[6 * reactions[i] + k];
   }
 
-  /// Kind, name and links of a force element, and how many such there were before.
+  /// Kind, name and links of a force element, and the number of earlier elements that agree in all three.
   using ElementKey = std::tuple<std::string, std::string, std::vector<std::string>, int>;
   template <class Visitor>
   static void for_each_memory(const Model& model, const Visitor& visit) {
@@ -380,10 +319,10 @@ class Carrier {
     for_each_memory(new_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
       const auto found = old.find(key);
       if (found == old.end() || found->second.first->memory_size() != element.memory_size()) return;
-      // It speaks of places in frames of nodes.
+      // The memory may contain positions in frames of nodes, so all nodes have to correspond.
       const std::vector<int>&own = element.reach(), &other = found->second.first->reach();
-      const bool is_same =
-          std::equal(own.begin(), own.end(), other.begin(), other.end(), [&](int a, int b) { return nodes_[a] == b; });
+      const bool is_same = std::equal(own.begin(), own.end(), other.begin(), other.end(),
+                                      [&](int a, int b) { return same_.nodes[a] == b; });
       if (!is_same) return;
       const auto begin = state_.force_memory.begin() + static_cast<std::ptrdiff_t>(found->second.second);
       std::copy(begin, begin + element.memory_size(), out.force_memory.begin() + static_cast<std::ptrdiff_t>(memory));
@@ -391,11 +330,11 @@ class Carrier {
   }
 
   void add_wrench(NodalLoad wrench, State& out) const {
-    const auto link = std::find(links_.begin(), links_.end(), wrench.link);
-    if (wrench.link < 0 || link == links_.end()) return;
-    const LinkFrame &now = new_.links[link - links_.begin()], &then = old_.links[wrench.link];
-    if (now.frame.node < 0) return;  // on what is fixed to the world now
-    wrench.link = static_cast<int>(link - links_.begin());
+    const auto link = std::find(same_.links.begin(), same_.links.end(), wrench.link);
+    if (wrench.link < 0 || link == same_.links.end()) return;
+    const LinkFrame &now = new_.links[link - same_.links.begin()], &then = old_.links[wrench.link];
+    if (now.frame.node < 0) return;  // the link is fixed to the world in the new model
+    wrench.link = static_cast<int>(link - same_.links.begin());
     if (now.beam) {
       wrench.node += now.frame.node - then.frame.node;
     } else {
@@ -413,30 +352,13 @@ class Carrier {
   const Model& old_;
   const State& state_;
   const Model& new_;
-  // Per link, coordinate, sensor, node and point of the new model that of the old one, or -1. Of nodes those whose
-  // frames are the same in their bodies.
-  std::vector<int> links_, coordinates_, sensors_, nodes_, stiffness_points_, mass_points_;
-  std::vector<bool> is_touched_;  // per node
-  std::set<int> touched_points_;  // with mass
+  ModelCorrespondence same_;
+  std::vector<bool> is_touched_;  // per node: whether its tree contains a touched link
+  std::set<int> touched_points_;  // mass points of elements in those trees
   Vector3 origin_;                // State::origin
 };
 
 }  // namespace
-
-std::optional<std::string> link_with_other_mesh(const Model& before, const Model& after) {
-  const std::vector<int> links = same_names(before.links, after.links);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i] < 0) continue;
-    const std::optional<BeamLink>&then = before.links[links[i]].beam, &now = after.links[i].beam;
-    if (!then && !now) continue;
-    const bool is_same =
-        then && now && then->order == now->order &&
-        std::equal(then->element_ends.begin(), then->element_ends.end(), now->element_ends.begin(),
-                   now->element_ends.end(), [&](double a, double b) { return std::abs(a - b) <= 1e-9 * now->length; });
-    if (!is_same) return after.links[i].name;
-  }
-  return std::nullopt;
-}
 
 State carried_state(const ModelOfScene& before, const State& state, const ModelOfScene& after,
                     const std::set<std::string>& touched, const std::function<void(State&)>& begin) {

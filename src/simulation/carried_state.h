@@ -1,30 +1,20 @@
 #pragma once
-/// A state as that of another model: what has the same name is where it was, moves as it did and remembers the same.
+/// Converts a state to another model, when a scene is edited while it moves. Whatever has the same name in both models
+/// keeps its position, its motion and its memory.
 
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
-#include "flexarm/scene/scene_description.h"
-#include "model/model.h"
 #include "model/state.h"
+#include "simulation/model_correspondence.h"
 
 namespace flexarm {
 
-/// A flexible link of both models that has other elements in one than in the other.
-std::optional<std::string> link_with_other_mesh(const Model& before, const Model& after);
-
-/// A scene's model.
-struct ModelOfScene {
-  const scene::SceneDescription& scene;
-  const Model& model;
-};
-
-/// `state` is one of `before`. What is new is where `after` has it start. `begin`: adds what a scheme keeps at the
-/// beginning of a motion; of all that is not `touched` it goes on as it was.
-/// Flexible links have the same meshes, and no slider has left its line.
+/// Converts `state`, a state of `before`, to a state of `after`. New parts start where `after` places them. `begin`
+/// adds to a state what a scheme stores at the beginning of a motion, such as accelerations. Only the trees that
+/// contain a link of `touched` get these values; all other parts keep their own.
+/// Requires that flexible links have the same meshes in both models, and that no slider has left its line.
 State carried_state(const ModelOfScene& before, const State& state, const ModelOfScene& after,
                     const std::set<std::string>& touched, const std::function<void(State&)>& begin);
 

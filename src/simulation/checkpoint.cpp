@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +14,7 @@
 
 #include "math/number_text.h"
 #include "model/state_numbers.h"
+#include "simulation/checkpoint_scene.h"
 #include "simulation/fingerprint.h"
 #include "simulation/inside.h"
 #include "simulation/scene_identity.h"
@@ -21,8 +23,9 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 14";
-constexpr const char* kHeaderWithoutValues = "flexarm-checkpoint 13";  // of files that only lack the scene's values
+constexpr const char* kHeader = "flexarm-checkpoint 15";
+constexpr const char* kHeaderWithoutFile = "flexarm-checkpoint 14";    // older: lacks only the scene's file
+constexpr const char* kHeaderWithoutValues = "flexarm-checkpoint 13";  // older: lacks the scene's values, too
 constexpr std::size_t kShown = 120;                                    // characters of a line in messages
 
 /// The last line of a file whose other lines are `text`.
@@ -32,7 +35,7 @@ std::string checksum_line(const std::string& text) {
   return "checksum " + fingerprint.text() + "\n";
 }
 
-/// What must agree for a state to fit a simulation, one thing per line; and by which values.
+/// What must agree for a state to fit a simulation: as text, one item per line, and as named values.
 SceneIdentity identity(const Simulation& simulation) {
   const State& state = state_of(simulation);
   SceneIdentity out = identity_of(simulation.scene(), scheme_of(simulation));
@@ -48,9 +51,20 @@ SceneIdentity identity(const Simulation& simulation) {
   return out;
 }
 
-// ---------------------------------------------------------------- the scene's values, to tell what differs
+// ---------------------------------------------------------------- the scene's file, and its values, by which messages
+// say what differs
 
+constexpr const char* kSceneFile = "scene_file ";
 constexpr const char* kValues = "values ";
+
+/// Empty if the scene does not come from a file that is still there.
+std::string file_line(const scene::SceneDescription& scene) {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::absolute(scene.file, error).lexically_normal();
+  if (error || !std::filesystem::is_regular_file(path, error) || path.string().find('\n') != std::string::npos)
+    return "";
+  return kSceneFile + path.string() + "\n";
+}
 
 std::string values_text(const std::vector<SceneValue>& values) {
   std::string text = kValues + std::to_string(values.size()) + "\n";
@@ -58,7 +72,7 @@ std::string values_text(const std::vector<SceneValue>& values) {
   return text;
 }
 
-/// Of a checkpoint; none if it does not have them.
+/// Reads the scene's values from a checkpoint. Empty if it does not contain them.
 std::multimap<std::string, std::string> read_values(const std::string& text) {
   std::multimap<std::string, std::string> values;
   std::istringstream lines(text.substr(std::min(text.size(), text.rfind(std::string("\n") + kValues))));
@@ -73,7 +87,7 @@ std::string shortened(const std::string& text) {
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
-/// "parameter 'mass': expected 4, found 5; link 'bob' ..."; empty if none differs.
+/// Says in words what differs: "parameter 'mass': expected 4, found 5; link 'bob' ...". Empty if nothing does.
 std::string differences(const std::vector<SceneValue>& expected, std::multimap<std::string, std::string> found) {
   constexpr std::size_t kMostShown = 3;
   std::vector<std::string> told;
@@ -94,7 +108,7 @@ std::string differences(const std::vector<SceneValue>& expected, std::multimap<s
   return text;
 }
 
-/// What is kept per node, for another number of nodes.
+/// Resizes everything that a state has per node.
 void resize_nodes(State& state, std::size_t count) {
   if (!state.total_rotations.empty()) state.total_rotations.resize(count, Vector3::Zero());
   if (!state.forces.empty()) state.forces.resize(count, Vector6::Zero());
@@ -113,15 +127,15 @@ std::string hexadecimal(double value) {
   throw std::runtime_error("checkpoint '" + name + "': " + what);
 }
 
-/// A checkpoint's lines, one after the other; errors name the file and the line.
+/// Reads a checkpoint line by line. Errors name the file and the line.
 class Reader {
  public:
   Reader(const std::string& text, const std::string& name) : name_(name), lines_(text) {
     const std::string header = next();
-    if (header != kHeader && header != kHeaderWithoutValues)
+    if (header != kHeader && header != kHeaderWithoutFile && header != kHeaderWithoutValues)
       fail_line(header, "'" + std::string(kHeader) + "': another format, or no checkpoint");
-    has_values_ = header == kHeader;
-    // An unfinished or damaged file would give a wrong state, or one that is another scene's.
+    has_values_ = header != kHeaderWithoutValues;
+    // Verify the checksum: an unfinished or damaged file would give a wrong state, or seem to belong to another scene.
     const std::size_t end = text.rfind("checksum ");
     if (end == std::string::npos) fail("is damaged: it does not end with its checksum");
     const std::string expected = checksum_line(text.substr(0, end)), found = text.substr(end);
@@ -140,7 +154,7 @@ class Reader {
     fail(fmt::format("line {} is '{}', expected {}", number_, shown(got), expected));
   }
 
-  /// Takes the lines of `expected`.
+  /// Reads as many lines as `expected` has, and fails if they differ.
   void require_identity(const SceneIdentity& expected) {
     std::istringstream wanted(expected.text);
     for (std::string line; std::getline(wanted, line);) {
@@ -152,9 +166,10 @@ class Reader {
       fail_line(got, "'" + shown(line) + "': it belongs to another scene, scheme or step");
     }
   }
-  /// Takes the scene's values, if it has them, and the checksum.
+  /// Reads the scene's file and values, as far as they are there, and the checksum.
   void take_end() {
     std::string line = next();
+    if (line.rfind(kSceneFile, 0) == 0) line = next();
     if (has_values_) {
       std::istringstream in(line);
       std::string word;
@@ -174,7 +189,7 @@ class Reader {
   }
 
  private:
-  /// Without the line's end, shortened.
+  /// The text's first line, shortened.
   static std::string shown(const std::string& line) { return line.substr(0, std::min(line.find('\n'), kShown)); }
 
   std::string name_;
@@ -183,7 +198,7 @@ class Reader {
   int number_ = 0;
 };
 
-/// Where they act; empty if there are none.
+/// Nodes and links on which wrenches act. Empty if there are no wrenches.
 std::string wrenches_text(const std::vector<NodalLoad>& wrenches) {
   if (wrenches.empty()) return "";
   std::string text = fmt::format(" wrenches {}", wrenches.size());
@@ -198,11 +213,11 @@ std::string counts_line(const State& state) {
                      state.steps, state.halving_level, state.good_steps, state.history.increments[0].size(),
                      state.history.count, state.history.order, state.drives.count, state.reactions.size(),
                      state.left_lines.size(), fmt::join(state.left_lines, " "), wrenches_text(state.wrenches)) +
-         // Where there are some only: what was kept before can still be read.
+         // Written only for scenes with sensors, so that older files of scenes without sensors can still be read.
          (state.samples.empty() ? "" : fmt::format("transmitted {}\n", state.transmitted.count));
 }
 
-/// The whole numbers, and room for the others.
+/// Reads the whole numbers, and resizes the state's lists accordingly.
 void read_counts(Reader& reader, State& state) {
   const std::string line = reader.next();
   std::istringstream in(line);
@@ -224,25 +239,15 @@ void read_counts(Reader& reader, State& state) {
   state.reactions.assign(reactions, Vector6::Zero());
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
   std::size_t wrenches = 0;
-  if (in >> word) require(in >> wrenches && wrenches <= line.size());  // each takes some of its characters
+  if (in >> word) require(in >> wrenches && wrenches <= line.size());  // each takes some of the line's characters
   state.wrenches.assign(wrenches, {});
   for (NodalLoad& wrench : state.wrenches) require(static_cast<bool>(in >> wrench.node >> wrench.follows));
-  if (in >> word)  // what was kept before does not say it
+  if (in >> word)  // older files do not have the links
     for (NodalLoad& wrench : state.wrenches) require(word == "on" && in >> wrench.link);
   if (state.samples.empty()) return;
   const std::string transmitted = reader.next();
   std::istringstream numbers(transmitted);
   if (!(numbers >> word >> state.transmitted.count)) reader.fail_line(transmitted, "the number of forces of joints");
-}
-
-/// Errors of `write` name the file.
-template <class Write>
-void naming(const std::string& path, const Write& write) {
-  try {
-    write();
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("checkpoint '" + path + "' " + error.what());
-  }
 }
 
 }  // namespace
@@ -251,22 +256,30 @@ std::string checkpoint_text(const Simulation& simulation) {
   const SceneIdentity scene = identity(simulation);
   std::string text = fmt::format("{}\n{}{}", kHeader, scene.text, counts_line(state_of(simulation)));
   for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
-  text += values_text(scene.values);
+  text += file_line(simulation.scene()) + values_text(scene.values);
   return text + checksum_line(text);
 }
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
-  naming(path, [&] { UnfinishedFile(path, checkpoint_text(simulation)).put_in_place(); });
+  with_subject("checkpoint '" + path + "'", [&] { UnfinishedFile(path, checkpoint_text(simulation)).put_in_place(); });
 }
 
 void try_checkpoint(const Simulation& simulation, const std::string& path) {
-  naming(path, [&] { UnfinishedFile(path, checkpoint_text(simulation)); });
+  with_subject("checkpoint '" + path + "'", [&] { UnfinishedFile(path, checkpoint_text(simulation)); });
 }
 
-void read_checkpoint(Simulation& simulation, const std::string& path) {
+namespace {
+
+std::string text_of_checkpoint(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path)) fail_reading(path, "cannot be opened");
-  read_checkpoint_text(simulation, {std::istreambuf_iterator<char>(in), {}}, path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+void read_checkpoint(Simulation& simulation, const std::string& path) {
+  read_checkpoint_text(simulation, text_of_checkpoint(path), path);
 }
 
 void read_checkpoint_text(Simulation& simulation, const std::string& text, const std::string& name) {
@@ -286,6 +299,28 @@ void read_checkpoint_text(Simulation& simulation, const std::string& text, const
   if (std::isfinite(energies.total() + energies.work + energies.dissipated)) return;
   simulation.restore(before);
   reader.fail("not a state of this scene: its energies are not finite");
+}
+
+bool is_checkpoint(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string line;
+  return std::getline(in, line) && line.rfind("flexarm-checkpoint ", 0) == 0;
+}
+
+CheckpointScene scene_of_checkpoint(const std::string& path) {
+  const std::string text = text_of_checkpoint(path);
+  const Reader reader(text, path);  // refuses what is no saved state
+  CheckpointScene scene;
+  std::istringstream lines(text);
+  for (std::string line; scene.file.empty() && std::getline(lines, line);)
+    if (line.rfind(kSceneFile, 0) == 0) scene.file = line.substr(std::strlen(kSceneFile));
+  const std::string before = "parameter '";
+  for (const auto& [name, value] : read_values(text)) {
+    const std::optional<double> number = parse_number(value);
+    if (name.rfind(before, 0) == 0 && number)
+      scene.parameters[name.substr(before.size(), name.size() - before.size() - 1)] = *number;
+  }
+  return scene;
 }
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// Fields of a line of comma-separated values.
+/// Appends fields to a line of comma-separated values.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace flexarm::csv {
 
-/// A field that contains separators stands in quotes (RFC 4180).
+/// Appends a text, in quotes if it contains separators (RFC 4180).
 inline void append(std::string& line, const std::string& name) {
   if (!line.empty()) line += ',';
   if (name.find_first_of(",\"") == std::string::npos) {
@@ -19,7 +19,7 @@ inline void append(std::string& line, const std::string& name) {
   line += '"';
 }
 
-/// A number with 17 significant digits, so that it is read back bit for bit, in any locale.
+/// Appends a number with 17 significant digits, so that it is read back bit for bit, in any locale.
 inline void append(std::string& line, double value) {
   if (!line.empty()) line += ',';
   char digits[kLongestNumber];

@@ -27,8 +27,8 @@ bool is_standard_output(const std::string& path) {
 
 std::FILE* open(const std::string& path) {
   std::FILE* file = is_standard_output(path) ? fdopen(dup(STDOUT_FILENO), "w") : std::fopen(path.c_str(), "w");
-  // Rows go out as a whole: a reader has no broken ones, nor has what is left when the process is killed, but where
-  // that is in the middle of a write into two pages, which Linux ends between them.
+  // Unbuffered, so that each row is written as a whole: readers see no partial rows, and a killed process leaves none.
+  // The exception is a kill during a write across two memory pages, which Linux may end between them.
   if (file) std::setvbuf(file, nullptr, _IONBF, 0);
   return file;
 }
@@ -55,7 +55,7 @@ void CsvWriter::write_line(std::string& line) {
   line += '\n';
   if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size()) {
     const int reason = errno;
-    // The part of a row that still had room; of what is no regular file nothing can be taken back.
+    // Remove the part of the row for which there was still room. If this is not a regular file, nothing can be removed.
     [[maybe_unused]] const int ignored = ftruncate(fileno(file_.get()), written_);
     errno = reason;
     fail(path_);

@@ -14,12 +14,12 @@
 namespace flexarm {
 namespace {
 
-/// Of what a joint moves.
+/// A driven end is reported if its inertia is less than this part of the inertia of all that the joint moves.
 constexpr double kSmallPart = 1e-2;
-/// Matrices of their size are factorised at once.
+/// Dense matrices of this size are factorised quickly enough.
 constexpr std::size_t kMostUnknowns = 500;
 
-/// Nodes that a joint moves: its slave and what is joined to that by elements and further joints.
+/// Nodes that a joint moves: its slave, and all nodes connected to it by elements and further joints.
 std::vector<bool> moved_nodes(const Model& model, const JointMap& joint) {
   std::vector<bool> moves(model.nodes.size(), false);
   moves[joint.slave] = true;
@@ -39,7 +39,7 @@ std::vector<bool> moved_nodes(const Model& model, const JointMap& joint) {
   return moves;
 }
 
-/// About an axis at a joint, of all that the joint moves [kg m^2].
+/// Inertia of all that the joint moves, about `axis` through the joint [kg m^2].
 double moved_inertia(const Model& model, const JointMap& joint, const Vector3& axis) {
   const Vector3 origin = moved_origin(joint, model.nodes[joint.slave]);
   const std::vector<bool> moves = moved_nodes(model, joint);
@@ -58,24 +58,47 @@ bool turns(const JointMap& joint) {
   return joint.kind == JointMapKind::Scalar && !joint.rotation.isZero(0);
 }
 
-bool is_driven(const Model& model, const Coordinate& coordinate) {
-  if (coordinate.motion >= 0 || coordinate.mimicked >= 0) return false;
-  if (coordinate.effort >= 0) return true;
-  if (coordinate.actuator < 0) return false;
-  const Actuator& actuator = model.actuators[coordinate.actuator];
-  return actuator.servo || actuator.drive.inertia > 0 || actuator.drive.gear;
+/// Per node: whether it belongs to a beam that bends, or fixed joints connect it to such a node.
+std::vector<bool> nodes_at_beams(const Model& model) {
+  std::vector<bool> out(model.nodes.size(), false);
+  for_each_element(model.beams, [&](const auto& element) {
+    for (const int node : element.nodes) out[node] = true;
+  });
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const JointMap& joint : model.joints) {
+      if (joint.kind != JointMapKind::Rigid || joint.master < 0 || out[joint.master] == out[joint.slave]) continue;
+      out[joint.master] = out[joint.slave] = grows = true;
+    }
+  }
+  return out;
 }
 
-/// Of each driven joint that turns, the inertia that resists a drive for `time`: by a step of that length of the
-/// midpoint rule, from the mechanism as it starts, without what its servos add.
+/// Whether the scene drives the coordinate, or limits its effort, as scenes do whose joints are driven by commands.
+/// Rigid robots have such limits, too: there only joints at a beam count.
+bool is_driven(const Model& model, const Coordinate& coordinate, const std::vector<bool>& at_beam) {
+  if (coordinate.motion >= 0 || coordinate.mimicked >= 0) return false;
+  if (coordinate.effort >= 0) return true;
+  if (coordinate.actuator >= 0) {
+    const Actuator& actuator = model.actuators[coordinate.actuator];
+    if (actuator.servo || actuator.drive.inertia > 0 || actuator.drive.gear) return true;
+  }
+  const JointMap& joint = model.joints[coordinate.joint];
+  return coordinate.effort_limit > 0 && (at_beam[joint.slave] || (joint.master >= 0 && at_beam[joint.master]));
+}
+
+/// For each driven joint that rotates, the effective inertia that its drive feels for `time` [kg m^2]. It follows from
+/// one midpoint-rule step of that length, with the linear model at the start and without servos. Empty if the model is
+/// too large or has no linear model.
 std::map<std::string, double> resistances(const Simulation& simulation, double time) {
   std::map<std::string, double> out;
   if (simulation.degrees_of_freedom() > kMostUnknowns) return out;
   LinearRequest request;
   request.about = LinearisedAbout::Instant;
   const Model& model = model_of(simulation);
+  const std::vector<bool> at_beam = nodes_at_beams(model);
   for (const Coordinate& coordinate : model.coordinates)
-    if (is_driven(model, coordinate) && turns(model.joints[coordinate.joint])) {
+    if (is_driven(model, coordinate, at_beam) && turns(model.joints[coordinate.joint])) {
       request.inputs.push_back("effort:" + coordinate.name);
       request.outputs.push_back("velocity:" + coordinate.name);
     }
@@ -83,7 +106,8 @@ std::map<std::string, double> resistances(const Simulation& simulation, double t
   scene::SceneDescription scene = simulation.scene();
   scene.servos.clear();
   scene.starts_in_equilibrium = false;
-  // At rest: what a load accelerates at the start bends the bare end of a beam, and seems to soften it.
+  // Linearise at rest and without loads. A load that accelerates the bare end of a beam bends it at once, so that the
+  // end would seem softer.
   scene.gravity.setZero();
   scene.efforts.clear();
   scene.loads.clear();
@@ -115,7 +139,8 @@ std::vector<DrivenEnd> driven_ends(const Simulation& simulation) {
     Vector3 axis = joint.rotation.normalized();
     if (joint.master >= 0) axis = model.nodes[joint.master].rotation * axis;
     const double whole = moved_inertia(model, joint, axis) + armature(model, coordinate);
-    if (found->second < kSmallPart * whole) ends.push_back({coordinate.name, found->second, whole});
+    if (found->second < kSmallPart * whole)
+      ends.push_back({coordinate.name, found->second, whole, 2 * found->second / simulation.step_size()});
   }
   return ends;
 }
@@ -130,12 +155,13 @@ std::string warning_of_shaking_servos(const Simulation& simulation) {
     const auto& drives = simulation.scene().drives;
     const auto drive =
         std::find_if(drives.begin(), drives.end(), [&](const auto& one) { return one.coordinate == servo.coordinate; });
-    if (drive != drives.end() && drive->stiffness) continue;  // its rotor is what the servo moves
+    if (drive != drives.end() && drive->stiffness) continue;  // the servo acts on the rotor, not on the beam's end
     const double held = std::max(servo.sample_time, simulation.step_size());
     const std::map<std::string, double> resists = resistances(simulation, held);
     const auto found = resists.find(servo.coordinate);
-    // An inertia J alone shakes where damping * held > 2 J. The end of a beam without damping, whose own motion the
-    // samples miss, may do so with more inertia; a rotor of three times the product calmed all that were tried.
+    // An inertia J alone shakes if damping * held > 2 J. The end of a beam without damping may shake even with a larger
+    // inertia, since the samples miss the beam's own motion. A rotor with three times `needed` calmed all cases that
+    // were tried.
     const double needed = damping * (held + 2 * servo.delay);
     if (found == resists.end() || found->second > needed) continue;
     const double gear = drive != drives.end() ? drive->gear.value_or(1) : 1,
@@ -148,8 +174,8 @@ std::string warning_of_shaking_servos(const Simulation& simulation) {
   }
   return told.empty()
              ? ""
-             : "sampled servos may shake the ends of beams that they act on, for want of inertia there; what would "
-               "be enough:" +
+             : "sampled servos may shake the ends of beams that they act on, since these have too little inertia; "
+               "sufficient would be:" +
                    told;
 }
 

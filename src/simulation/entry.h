@@ -1,5 +1,5 @@
 #pragma once
-/// Checked access to lists by indices that users of the library give.
+/// Checked access to lists by indices from users of the library.
 
 #include <cstddef>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// @throws std::out_of_range saying `what` was asked for, and how many there are
+/// @throws std::out_of_range whose message says `what` the list contains, and how many entries there are
 template <class Entry>
 const Entry& entry(const std::vector<Entry>& entries, std::size_t index, const char* what) {
   if (index >= entries.size())

@@ -11,13 +11,13 @@
 namespace flexarm {
 namespace {
 
-/// Of the largest motion of a node; a joint that moves less is not named.
+/// A joint is named if it moves by more than this part of the mode's largest nodal motion.
 constexpr double kMoves = 1e-3;
 constexpr std::size_t kMostNames = 6;
-/// What a coordinate may be off by that is told [rad or m].
+/// Uncertainty of a coordinate above which it is reported [rad or m].
 constexpr double kWeak = 1e-6;
 
-/// Names of the joints that move in some free motion.
+/// Names of the joints that move in at least one free mode.
 std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, const Model& model,
                                        const std::vector<Mode>& modes) {
   const auto moves = [&](const std::string& name) {
@@ -57,7 +57,8 @@ bool are_modes_quick(std::size_t unknowns, std::size_t coordinates) {
 std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Model& model, const StepResult& result,
                                 const std::vector<Mode>& modes) {
   const std::vector<std::string> joints = unheld_joints(scene, model, modes);
-  // The tangent of what moves freely is singular but for round-off.
+  // If something can move freely, the tangent is singular up to round-off, so that the solver may fail in any of these
+  // ways.
   const bool is_singular =
       result.reason == StepResult::Reason::SingularTangent || result.reason == StepResult::Reason::NoConvergence ||
       result.reason == StepResult::Reason::NeverRests || result.reason == StepResult::Reason::NotFinite;
@@ -87,15 +88,15 @@ std::vector<std::string> doubts_about_equilibrium(const Model& model, double con
   for (const std::size_t coordinate : hold.free) free.push_back(model.coordinates[coordinate].name);
   if (!free.empty())
     doubts.push_back(
-        fmt::format("nothing holds {}: {} where the start has {}, but may stand elsewhere as well (a "
+        fmt::format("nothing holds {}: {} where the start put {}, but other positions are equilibria, too (a "
                     "<motion> would hold {})",
-                    listed(free), free.size() == 1 ? "it stands" : "they stand", free.size() == 1 ? "it" : "them",
+                    listed(free), free.size() == 1 ? "it stays" : "they stay", free.size() == 1 ? "it" : "them",
                     free.size() == 1 ? "it" : "them"));
   else if (!result.loose_link.empty())
-    doubts.push_back(
-        fmt::format("nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> of its joint "
-                    "would hold it)",
-                    result.loose_link));
+    doubts.push_back(fmt::format(
+        "nothing holds link '{}' in its position: other positions are equilibria, too (a <motion> of its joint "
+        "would hold it)",
+        result.loose_link));
   if (hold.weakness > kWeak)
     doubts.push_back(fmt::format("joint '{}' is held so weakly that round-off may move it by {:.1g} {}",
                                  model.coordinates[hold.weakest].name, hold.weakness,

@@ -12,24 +12,24 @@
 
 namespace flexarm {
 
-/// Load steps that lead to most equilibria.
+/// Number of load steps that is enough for most equilibria.
 constexpr int kLoadSteps = 10;
 
-/// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
+/// Whether all free modes can be computed in seconds. Without springs, each joint coordinate may have one.
 bool are_modes_quick(std::size_t unknowns, std::size_t coordinates);
 
-/// Why solve_static() failed with `result`: by what nothing holds, if that is it. `modes` about the initial
-/// configuration: of all free motions; or none.
+/// Says why solve_static() failed with `result`. If nothing holds some joints, it names them. `modes`: all free modes
+/// about the initial configuration, or an empty list if they are not known.
 std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Model& model, const StepResult& result,
                                 const std::vector<Mode>& modes);
-/// The same of a simulation, which is as before solve_static(): looks for these modes where that is quick.
+/// The same for a simulation whose state is as before solve_static(). Computes the free modes if that is quick.
 std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result);
 
-/// That an equilibrium is not stable, or not the only one, or known to a few digits; empty if none of these.
-/// `consequence`: what becomes of the link that falls.
+/// Says whether an equilibrium is unstable, not the only one, or known to a few digits only. Empty if none of these
+/// holds. `consequence`: words for what happens to the link that falls.
 std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
                                                   const StaticResult& result, const std::string& consequence);
-/// The same of a simulation, which is in that equilibrium.
+/// The same for a simulation that is in that equilibrium.
 std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,
                                                   const std::string& consequence);
 

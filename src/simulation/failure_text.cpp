@@ -11,7 +11,7 @@ namespace {
 using Failure = StepResult::Failure;
 using Reason = StepResult::Reason;
 
-/// What is wrong there.
+/// The size of what failed, with its unit.
 std::string amount_text(const Failure& failure) {
   switch (failure.quantity) {
     case Failure::Quantity::None:
@@ -30,7 +30,7 @@ std::string amount_text(const Failure& failure) {
   return "";
 }
 
-/// "what at where", of which one or both may be missing.
+/// "amount at place"; one or both parts may be missing.
 std::string place_and_amount(const Model& model, const Failure& failure) {
   const std::string name = place_name(model, failure.place);
   std::string amount = amount_text(failure);
@@ -48,32 +48,33 @@ std::string advice(const Model& model, const StepResult& result) {
     case Reason::NoConvergence:
       return failure.place.element >= 0
                  ? "a finer mesh of that link, a smaller step, numerical dissipation (rho_infinity)"
-                 : "a smaller step, damping of what moves there, more room for what a <motion> asks for";
+                 : "a smaller step, damping of the parts that move there, a <motion> that the mechanism can follow";
     case Reason::SingularTangent:
-      return "inertia or stiffness for what moves there (an <inertial>, a spring), another start than a dead point; "
+      return "inertia or stiffness for the parts that move there (an <inertial>, a spring), a start away from dead "
+             "points; "
              "see flexarm check";
     case Reason::NotFinite:
       return "finite loads, efforts and motions: look at their functions of time and at commands";
     case Reason::RotationTooLarge:
-      // From a sub-step that turns by so much to one that turns by half a radian.
+      // The failed sub-step turns by `amount`. Suggest the length of one that turns by half a radian.
       return fmt::format(
-          "a smaller step ({:.1g} s, say), or less effort, more damping or a <limit> at what turns there",
+          "a smaller step (such as {:.1g} s), or less effort, more damping or a <limit> for the part that turns there",
           failure.amount > 0 ? 0.5 * failure.step / failure.amount : failure.step);
     case Reason::OffTheLine:
       return "a smaller step, a longer line, or an end where the slider stops or leaves (on_end)";
     case Reason::DrivenOffTheLine:
       return "a <motion> that stays on the line, or a longer line";
     case Reason::OpenLoop:
-      return "a start at which the loop is no dead point, and motions within its reach";
+      return "a start at which the loop is not at a dead point, and motions within its reach";
     case Reason::DeadPoint:
-      return "motions within what the loop can reach, other lengths of its links, or a joint that yields";
+      return "motions within the loop's reach, other lengths of its links, or a compliant joint";
     case Reason::NeverRests:
-      return "a <motion>, a stop or a load that holds what moves";
+      return "a <motion>, a stop or a load that holds the moving parts";
     case Reason::HitTooFast:
     case Reason::EventWithin:
       return "a smaller step, or more halvings (max_halvings)";
     case Reason::OutOfTime:
-      return "going on from here, which costs as much again, a smaller step, or a longer recovery_wall_time";
+      return "continuing from here, which takes as much time again, a smaller step, or a longer recovery_wall_time";
     case Reason::BentTooFar:
       return fmt::format("a finer mesh of that link: {} elements or more",
                          2 * model.links[failure.place.link].beam->elements.size());
@@ -81,7 +82,7 @@ std::string advice(const Model& model, const StepResult& result) {
   return "";
 }
 
-/// @throws std::invalid_argument if the place is none of this model
+/// @throws std::invalid_argument if the model does not have the place
 void require_place(const Model& model, const StepResult& result) {
   const StepResult::Place& place = result.failure.place;
   const auto is_below = [](int index, std::size_t count) { return index < static_cast<int>(count); };
@@ -89,7 +90,7 @@ void require_place(const Model& model, const StepResult& result) {
                        is_below(place.loop, model.closures.size()) && is_below(place.link, model.links.size());
   const bool needs_element = place.element >= 0 || result.reason == StepResult::Reason::BentTooFar;
   if (!is_here || (needs_element && (place.link < 0 || !model.links[place.link].beam)))
-    throw std::invalid_argument("result: its place is none of this scene's; explain it by the simulation that failed");
+    throw std::invalid_argument("result: its place is not in this scene; call explain() of the simulation that failed");
 }
 
 }  // namespace

@@ -9,11 +9,11 @@
 
 namespace flexarm {
 
-/// What failed, where and when, what was tried, and what usually helps; one line. Empty if nothing failed.
-/// @throws std::invalid_argument if its place is none of this model: it is the result of another simulation
+/// Says in one line what failed, where and when, what was tried, and what usually helps. Empty if nothing failed.
+/// @throws std::invalid_argument if the model does not have the place: then the result is that of another simulation
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result);
 
-/// "element 3 of 8 of link 'arm'", "joint coordinate 'elbow'"; empty if it is not known.
+/// Names a place: "element 3 of 8 of link 'arm'", "joint coordinate 'elbow'". Empty if the place is unknown.
 std::string place_name(const Model& model, const StepResult::Place& place);
 
 }  // namespace flexarm

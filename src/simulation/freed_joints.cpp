@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-/// A simulation in which held joints are nodes of their own: motions with functions of time instead of numbers.
+/// Builds the scene so that held joints get nodes of their own: constant motions become functions of time.
 Simulation built_free(const Simulation& held) {
   scene::SceneDescription scene = held.scene();
   for (scene::PrescribedMotion& motion : scene.motions)
@@ -18,7 +18,8 @@ Simulation built_free(const Simulation& held) {
   return Simulation(std::move(scene));
 }
 
-/// Nodes that no joint places are beams'; links' beams have the same nodes in both models.
+/// Computes the state of the freed simulation. Nodes that no joint places belong to beams, and the beam of a link has
+/// the same nodes in both models.
 class FreedState {
  public:
   FreedState(const Simulation& held, const Simulation& freed)

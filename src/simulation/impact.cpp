@@ -9,10 +9,10 @@
 namespace flexarm {
 namespace {
 
-/// Over the fastest motion: what is left open.
+/// Largest rate at which the closed joint may still open, relative to the fastest motion.
 constexpr double kHolds = 1e-10;
 
-/// All six constraints between both nodes, as they stand.
+/// All six constraints that hold two frames in their present relative pose.
 LoopClosure weld_between(const State& state, const Attachment& parent, const Attachment& child) {
   const Pose frame = attached_pose(state, child);
   const auto pose_of = [&](int node) {
@@ -33,7 +33,7 @@ LoopClosure weld_between(const State& state, const Attachment& parent, const Att
   return weld;
 }
 
-/// With the rotary inertia of beams where the scheme has it.
+/// Adds the beams' rotary inertia to the nodes, for schemes that lump it there.
 void lump_rotary_inertia(Model& model) {
   for (NodalInertia& inertia : model.inertias) inertia.rotary += inertia.beam_rotary;
   for_each_element(model.beams, [](auto& element) {
@@ -57,7 +57,7 @@ State after_impact(const Model& model, const Scheme& scheme, const State& state,
   }
   const LoopOpening left = opening_of(welded, poses, velocities);
   if (left.rate > kHolds * left.fastest)
-    throw std::invalid_argument("motions that are prescribed leave no velocities with which both go on as one body");
+    throw std::invalid_argument("prescribed motions allow no velocities with which the two could move on as one body");
   return after;
 }
 

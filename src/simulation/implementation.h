@@ -1,5 +1,5 @@
 #pragma once
-/// The data of a simulation.
+/// The private data of a Simulation.
 
 #include <map>
 #include <memory>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "building/cylinder_places.h"
 #include "building/model_builder.h"
 #include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
@@ -33,37 +34,43 @@ namespace flexarm {
 struct Simulation::Implementation {
   scene::SceneDescription scene;
   Scheme scheme;
-  IntegratorDescription first_integrator;  ///< by which that was made, and the initial state found
+  IntegratorDescription first_integrator;  ///< from which `scheme` was made and the initial state was found
   StepSettings settings;
   std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
   Model model;
-  std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
+  std::unique_ptr<const Model> built;  ///< set once a slider has left its line: the model as the scene describes it
   std::unique_ptr<Stepper> stepper;
-  std::shared_ptr<const State> initial;  ///< of this simulation and its copies
+  std::shared_ptr<const State> initial;  ///< shared by this simulation and its copies
   State state;
   std::vector<std::string> coordinate_names, link_names;
   std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
-  // What was made of `state`, for those who ask again.
+  // Results computed from `state`, kept for further requests.
   mutable PublishedMotion published;
   mutable std::optional<Energies> energies;
   mutable std::optional<Momenta> momenta;
   std::vector<NodalLoad> placed_wrenches;  // scratch
-  std::vector<double> static_norms;        // of the last solve for an equilibrium; empty after steps
+  std::vector<double> static_norms;        // update norms of the last solve for an equilibrium; empty after steps
   scene::Diagnostics start_warnings;
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
-      : scene(with_options(std::move(description), options)),
+      : Implementation(place_cylinders(with_options(std::move(description), options)), options) {}
+
+  Implementation(PlacedScene placed, const SimulationOptions& options)
+      : scene(std::move(placed.scene)),
         scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
         first_integrator(scene.integrator),
         settings(settings_of(scene, options)),
         model(build_model(scene, &rigid_lines)),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
         state(initial_state(model)),
-        start_warnings(held_joints(scene, model)) {
+        start_warnings(std::move(placed.warnings)) {
     require_suitable_slides(scene, scheme);
+    for (scene::Diagnostic& held : held_joints(scene, model)) start_warnings.push_back(std::move(held));
     for (scene::Diagnostic& doubt : doubts_about_scheme(scene, model, scheme))
       start_warnings.push_back(std::move(doubt));
+    const std::set<std::string> hidden = hidden_coordinates(scene);
     for (const Coordinate& coordinate : model.coordinates) {
+      if (hidden.count(coordinate.name) > 0) break;  // the last ones
       coordinate_indices.emplace(coordinate.name, coordinate_names.size());
       coordinate_names.push_back(coordinate.name);
     }
@@ -76,7 +83,7 @@ struct Simulation::Implementation {
       start_warnings.push_back(unknown_accelerations(scene, failure_text(model, settings, found)));
     if (!scene.starts_in_equilibrium)
       for (scene::Diagnostic& overlap : overlaps(scene, model, state)) start_warnings.push_back(std::move(overlap));
-    published.velocities(view());  // their memory is there from the start
+    published.velocities(view());  // so that its memory is allocated at the start
     take_samples(true);
     initial = std::make_shared<const State>(state);
   }
@@ -100,13 +107,13 @@ struct Simulation::Implementation {
     make_room();
   }
 
-  /// For wrenches, which threads apply that must not allocate memory.
+  /// Reserves memory for wrenches, since threads that must not allocate memory apply them.
   void make_room() {
     placed_wrenches.reserve(kRoomForWrenches);
     state.wrenches.reserve(kRoomForWrenches);
   }
 
-  /// Of a link: the end of its beam, if it has one.
+  /// The end of the link's beam; if it has no beam, the link's frame.
   Attachment tip(std::size_t link) const {
     const LinkFrame& frame = entry(model.links, link, "link");
     if (frame.beam) return frame.beam->tip;
@@ -134,7 +141,7 @@ struct Simulation::Implementation {
 
   void take_samples(bool all) { flexarm::take_samples(scene.sensors, view(), published, all, state.samples); }
 
-  /// Of a pose about the origin of the state.
+  /// Converts a pose relative to the state's origin to one in the world.
   Pose in_world(const Pose& pose) const { return {world_origin(model, state) + pose.position, pose.orientation}; }
   Pose in_world(const Attachment& frame) const {
     const Pose pose = attached_pose(state, frame);
@@ -155,7 +162,7 @@ struct Simulation::Implementation {
     stepper = std::make_unique<Stepper>(model, scheme, settings);
   }
 
-  /// The model in which these slides have left their lines.
+  /// Makes the model one in which the same sliders as in `other` have left their lines.
   void fit_to_state(const State& other) {
     if (other.left_lines == state.left_lines) return;
     Model changed = built ? *built : model;
@@ -171,7 +178,7 @@ struct Simulation::Implementation {
     stepper->invalidate();
   }
 
-  /// The state of another simulation of the same mechanism, as a state of this one.
+  /// Converts the state of another simulation of the same mechanism to a state of this one.
   State state_of_other(const Implementation& from) {
     fit_to_state(from.state);
     const bool is_same = from.scheme.name == scheme.name;
@@ -184,7 +191,8 @@ struct Simulation::Implementation {
     state.transmitted = from.state.transmitted;
     state.last_transmitted = from.state.last_transmitted;
     if (is_same) return state;
-    // Not as joints' rates have it: schemes may let slaves move a little beside them.
+    // The nodes keep the motion that they have, rather than the one that follows from the joints' rates: a scheme may
+    // let slaves deviate a little from their joints.
     for (std::size_t i = 0; i < state.nodes.size(); ++i) {
       const NodeState& node = closed.nodes[i];
       state.nodes[i] = {node.position, node.orientation, node.velocity, node.angular_velocity};
@@ -196,8 +204,8 @@ struct Simulation::Implementation {
     return state;
   }
 
-  /// Adds to a state at which a motion begins what the scheme keeps there.
-  /// @throws std::invalid_argument where that cannot be found
+  /// Adds to a state at which a motion begins what the scheme stores there, such as accelerations.
+  /// @throws std::invalid_argument if accelerations cannot be found
   void begin(State& state) {
     const StepResult found = stepper->initialise(state);
     if (!found.converged)

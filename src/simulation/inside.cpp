@@ -48,15 +48,22 @@ MadeForOutput made_for_output(const Simulation& simulation) {
   return {s.published.holds_rates(), s.published.holds_velocities(), s.published.holds_past(), s.energies.has_value(),
           s.momenta.has_value()};
 }
+const std::vector<Vector6>& node_velocities_of(const Simulation& simulation) {
+  const auto& s = Inside::of(simulation);
+  return s.published.velocities(s.view()).nodes();
+}
 const std::vector<double>& update_norms_of(const Simulation& simulation) {
   const auto& inside = Inside::of(simulation);
   return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
 }
 void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values) {
   const auto& s = Inside::of(simulation);
-  const double* memory = s.state.force_memory.data();
-  for (std::size_t k = 0; k < element; ++k) memory += s.model.force_elements[k]->memory_size();
-  s.model.force_elements.at(element)->put_out({s.state, s.published.velocities(s.view()).nodes(), memory}, values);
+  const ForceElement& put = *s.model.force_elements.at(element);
+  thread_local std::vector<double> rates;
+  rates.clear();
+  for (const int history : put.functions()) rates.push_back(s.model.histories[history].derivative(s.state.time));
+  const double* memory = s.state.force_memory.data() + memory_begin(s.model.force_elements, element);
+  put.put_out({s.state, s.published.velocities(s.view()).nodes(), memory, rates.data()}, values);
 }
 void put_out_touch(const Simulation& simulation, std::size_t pair, std::vector<double>& values) {
   const auto& s = Inside::of(simulation);
@@ -92,9 +99,9 @@ State start_at(const Simulation& simulation, const MechanismMotion& motion) {
   placed.nodes = motion.pose.nodes;
   placed.initial_released = motion.pose.released;
   placed.initial_velocity = motion.rates.nodes;
-  State state = initial_state(placed);
+  State state = initial_state(placed, inside.state.time);
   for (std::size_t i = 0; i < state.actuators.size(); ++i) {
-    if (!placed.actuators[i].drive.gear) continue;  // the rotor turns with its coordinate
+    if (!placed.actuators[i].drive.gear) continue;  // otherwise the rotor turns with its coordinate
     state.actuators[i].angle = motion.rotors[i];
     state.actuators[i].rate = motion.rates.rotors[i];
   }

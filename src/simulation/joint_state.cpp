@@ -18,12 +18,13 @@
 namespace flexarm {
 namespace {
 
-/// Gaps of closed loops over the size of the mechanism, and their angles [rad]: as at the start of a scene.
+/// Largest gap of a closed loop over the size of the mechanism, and largest angle [rad]: the same as at the start of a
+/// scene.
 constexpr double kClosed = 1e-6;
-/// The same of what opens a loop, over the fastest motion.
+/// Largest rate at which velocities may open a loop, relative to the fastest motion.
 constexpr double kStaysClosed = 1e-6;
 
-/// A mechanism as it stands and moves.
+/// Positions and velocities of a mechanism.
 struct Motion {
   std::vector<NodePose> poses;        // per node
   std::vector<Vector6> velocities;    // per node, spatial {v, w}
@@ -69,7 +70,7 @@ void check(const Model& model, const Coordinate& coordinate, const CoordinateSta
   }
 }
 
-/// Sets what is given, and lets mimics follow.
+/// Sets the given positions and velocities, and those of the mimic coordinates that follow.
 void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state,
                      const std::vector<CoordinateState>& coordinates, Motion& motion) {
   std::set<std::size_t> named;
@@ -90,7 +91,8 @@ void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const Stat
       released.displacement[component] = *wanted.position - carried_translation(joint, state)[component];
     }
   }
-  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {  // masters come last there
+  // From the back, since masters come behind their followers in this list.
+  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
     const Coordinate& follower = model.coordinates[mimic->coordinate];
     const Coordinate& master = model.coordinates[follower.mimicked];
     const double position = motion.released[master.joint].displacement[master.component];
@@ -106,7 +108,8 @@ Vector6 carried_velocity(const NodePose& parent, const Vector6& velocity, const 
   return carried;
 }
 
-/// Lets nodes follow the joints, root to leaf: those that no joint places move with their parents as they did.
+/// Makes nodes follow the joints, from the root to the leaves. A node that no joint places keeps its pose and velocity
+/// relative to its parent.
 class Follower {
  public:
   Follower(const Model& model, const DegreesOfFreedom& dof, const Motion& before, Motion& after)
@@ -125,7 +128,7 @@ class Follower {
   }
 
  private:
-  /// Its slave hangs on another node already.
+  /// Whether the joint closes a loop, so that its slave already follows another node.
   bool closes_loop(int joint) const {
     return model_.node_parents[model_.joints[joint].slave] != model_.joints[joint].master;
   }
@@ -155,7 +158,8 @@ class Follower {
     velocity.head<3>() += turn * Vector3(relative.head<3>());
     velocity.tail<3>() += turn * Vector3(relative.tail<3>());
   }
-  /// The end that a joint holds is where that has it, but for round-off.
+  /// Moves the slave of a joint that closes a loop to the pose that the joint gives, which must differ by round-off
+  /// only.
   void close(int joint) {
     NodePose& hanging = after_.poses[model_.joints[joint].slave];
     const NodePose held = slave_pose(model_, joint, after_.poses, after_.released[joint]);
@@ -176,15 +180,15 @@ class Follower {
   Motion& after_;
 };
 
-/// A scheme's own velocities open loops a little, and let slaves move a little beside their joints (joints.md 3.2): not
-/// the fault of who sets others.
+/// Removes the velocities with which loops open. A scheme's own velocities open loops a little, and let slaves deviate
+/// a little from their joints (joints.md 3.2). That must not become an error for a caller who sets other coordinates.
 void close_velocities(const Model& model, const DegreesOfFreedom& dof, const State& state, Motion& motion) {
   const VelocityChange change = closing_change(model, dof, state, motion.velocities);
   for (std::size_t i = 0; i < change.nodes.size(); ++i) motion.velocities[i] += change.nodes[i];
   for (std::size_t j = 0; j < change.rates.size(); ++j) motion.rates[j] += change.rates[j];
 }
 
-/// @throws std::invalid_argument where a loop of rigid links is open.
+/// @throws std::invalid_argument if a loop of rigid links is open.
 void check_positions(const Model& model, const Motion& motion) {
   for (const LoopClosure& closure : model.closures)
     for (const auto* constraints : {&closure.constraints, &closure.implied})
@@ -199,7 +203,7 @@ void check_positions(const Model& model, const Motion& motion) {
       }
 }
 
-/// @throws std::invalid_argument where one opens.
+/// @throws std::invalid_argument if the velocities open a loop.
 void check_velocities(const Model& model, const Motion& motion) {
   const LoopOpening opening = opening_of(model, motion.poses, motion.velocities);
   if (opening.rate > kStaysClosed * opening.fastest)
@@ -207,7 +211,7 @@ void check_velocities(const Model& model, const Motion& motion) {
                                 "' closes: give those of all its joints");
 }
 
-/// Rotors and controllers go with their coordinates: twists of gears and memories stay.
+/// Moves rotors and controllers along with their coordinates, so that twists of gears and memories of controllers stay.
 ActuatorState carried(const Model& model, const Actuator& actuator, ActuatorState own, const Motion& before,
                       const Motion& after) {
   const Coordinate& coordinate = model.coordinates[actuator.coordinate];
@@ -246,14 +250,13 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   check_positions(model, after);
   if (!coordinates.empty()) check_velocities(model, after);
 
-  // As if the mechanism had been built there.
+  // Make a state as if the mechanism had been built in this configuration.
   Model placed = model;
   placed.nodes = after.poses;
   placed.initial_released = after.released;
   placed.initial_velocity = after.velocities;
   placed.initial_origin = state.origin;
-  State out = initial_state(placed);
-  out.time = state.time;
+  State out = initial_state(placed, state.time);
   out.steps = state.steps;
   out.left_lines = state.left_lines;
   out.strain_rates = state.strain_rates;

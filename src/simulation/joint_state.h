@@ -10,8 +10,9 @@
 
 namespace flexarm {
 
-/// The state after Simulation::set_joint_state(), but for what a scheme adds to an initial one and for the work.
-/// @throws std::invalid_argument as that does.
+/// Returns the state after Simulation::set_joint_state(), except for what a scheme adds to an initial state, and for
+/// the change of work.
+/// @throws std::invalid_argument as set_joint_state() does.
 State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const State& state,
                        const std::vector<CoordinateState>& coordinates);
 

@@ -25,9 +25,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = LinearPort::Kind;
 
-/// Imaginary parts below this part of a pole are round-off.
+/// An imaginary part that is smaller than this part of |pole| is round-off.
 constexpr double kReal = 1e-12;
-/// Of the largest pole: sizes that round-off leaves something of, and such as are found with nearly all digits.
+/// Sizes relative to the largest pole. Poles below kLeastKnown have no correct digits; poles above kAlike have nearly
+/// all.
 constexpr double kLeastKnown = 1e-12, kAlike = 1e-5;
 
 Reference reference_of(LinearisedAbout about) {
@@ -39,7 +40,7 @@ std::vector<std::string> left_out(const Model& model, const State& state) {
   std::vector<std::string> effects;
   if (std::any_of(state.wrenches.begin(), state.wrenches.end(),
                   [](const NodalLoad& wrench) { return wrench.pull.damping > 0; }))
-    effects.push_back("dampers of what pulls on links");
+    effects.push_back("dampers of springs that pull on links");
   for (const Coordinate& coordinate : model.coordinates) {
     if (coordinate.friction != 0 || coordinate.friction_coefficient != 0)
       effects.push_back(fmt::format("friction of joint coordinate '{}'", coordinate.name));
@@ -48,7 +49,7 @@ std::vector<std::string> left_out(const Model& model, const State& state) {
     if (actuator.drive.friction != 0 || actuator.drive.loss != 0)
       effects.push_back(fmt::format("friction and losses of the drive of '{}'", coordinate.name));
     if (std::isfinite(actuator.drive.velocity_limit))
-      effects.push_back(fmt::format("what the motor of '{}' loses with its speed", coordinate.name));
+      effects.push_back(fmt::format("the speed-dependent limit of the motor of '{}'", coordinate.name));
     if (actuator.gyroscope)
       effects.push_back(fmt::format("the momentum of the rotor of '{}' as its axis turns", coordinate.name));
     if (!actuator.servo) continue;
@@ -61,7 +62,7 @@ std::vector<std::string> left_out(const Model& model, const State& state) {
   return effects;
 }
 
-/// Of y: those that states have, the driven ones among them behind the others.
+/// Indices into y of the coordinates that become states: first the free ones, then those that a motion input drives.
 struct Partition {
   std::vector<int> free, moved;
   std::vector<int> states() const {
@@ -71,7 +72,7 @@ struct Partition {
   }
 };
 
-/// Of a coordinate in y, or -1.
+/// Index of a coordinate in y, or -1.
 int place_of(int coordinate, const Model& model, const LinearDynamics& dynamics) {
   const auto& scalars = dynamics.scalars();
   const auto place =
@@ -92,7 +93,7 @@ Partition partition(const Model& model, const LinearDynamics& dynamics, const st
     if (input.kind != Kind::Motion) continue;
     const int place = place_of(input.coordinate, model, dynamics);
     if (std::find(out.moved.begin(), out.moved.end(), place) != out.moved.end())
-      throw std::invalid_argument(fmt::format("input '{}' is there twice", input.name));
+      throw std::invalid_argument(fmt::format("input '{}' is given twice", input.name));
     out.moved.push_back(place);
   }
   return out;
@@ -110,7 +111,7 @@ class StateSpace {
   Accelerations accelerations(const MatrixXd& forces, const std::vector<LinearPort>& inputs) const {
     const std::vector<int> states = parts_.states();
     const Eigen::Index free = size(parts_.free), moved = size(parts_.moved), count = free + moved;
-    // Columns: x, then u; of driven coordinates the rows are their accelerations themselves.
+    // Columns: x, then u. The rows of driven coordinates only contain their accelerations, which are inputs.
     MatrixXd by_motion = MatrixXd::Zero(moved, static_cast<Eigen::Index>(inputs.size()));
     Eigen::Index next = 0;
     for (std::size_t i = 0; i < inputs.size(); ++i)
@@ -134,7 +135,7 @@ class StateSpace {
   Partition parts_;
 };
 
-/// Which multiples of y, y' and y'' an output is: 0 to 2 of them are zero.
+/// An output as a linear function of y, y' and y''. One or two of the rows are zero for most outputs.
 struct OutputRows {
   Eigen::RowVectorXd place, rate, acceleration;
 };
@@ -163,7 +164,7 @@ std::vector<std::string> names_of(const std::vector<LinearPort>& ports) {
   return names;
 }
 
-/// All but states, inputs and outputs.
+/// The parts of a linear model other than states, inputs and outputs.
 LinearModel equations(const Simulation& simulation, const LinearDynamics& dynamics) {
   LinearModel out;
   out.coordinates =
@@ -176,7 +177,8 @@ LinearModel equations(const Simulation& simulation, const LinearDynamics& dynami
   return out;
 }
 
-/// What inputs do to y, a column each; motions, which are no forces, nothing.
+/// Generalised forces of the inputs on y, one column per input. Columns of motions are zero, since motions are no
+/// forces.
 MatrixXd forces_of(const std::vector<LinearPort>& inputs, const Simulation& simulation,
                    const LinearDynamics& dynamics) {
   MatrixXd forces = port_motion(simulation, dynamics, inputs).value.transpose();
@@ -200,7 +202,8 @@ void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, 
   out.drift << picked_rows(dynamics.rates(), places), picked_rows(dynamics.accelerations(), places);
 }
 
-/// The parts of two sets of eigenpairs whose values are at least, and below, a size; empty if they do not add up.
+/// Joins two sets of eigenpairs: from `slow` those smaller than `size`, from `fast` the others. Empty if the result
+/// does not have the right number of pairs.
 std::optional<Eigenpairs> joined(const Eigenpairs& fast, const Eigenpairs& slow, double size) {
   const auto places = [&](const Eigenpairs& pairs, bool are_slow) {
     std::vector<Eigen::Index> found;
@@ -218,8 +221,8 @@ std::optional<Eigenpairs> joined(const Eigenpairs& fast, const Eigenpairs& slow,
   return out;
 }
 
-/// Eigenvalues are found to a part of the largest one. Where the slow ones are much smaller they are found once more,
-/// as the large ones of (a - shift)^-1.
+/// The eigenvalue solver has an error relative to the largest eigenvalue. If the slow eigenvalues are much smaller,
+/// they are computed once more, as the large eigenvalues of (a - shift)^-1.
 Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
   Eigenpairs fast = dense_eigenpairs(a);
   const VectorXd sizes = fast.values.cwiseAbs();
@@ -243,7 +246,8 @@ Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
 
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
   const Model& model = model_of(simulation);
-  if (!model.held.empty()) return linearise(with_joints_freed(simulation), request);  // driven ones belong to y
+  // y contains the coordinates of driven joints, which held joints do not have.
+  if (!model.held.empty()) return linearise(with_joints_freed(simulation), request);
   const std::vector<LinearPort> inputs = input_ports(simulation, request.inputs);
   const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
   const LinearDynamics dynamics(model, state_of(simulation), scheme_of(simulation), reference_of(request.about),

@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-/// By the link that has the node, counted from the link's first.
+/// Name of a node: its link, and its index from the link's first node.
 std::string name_of_node(const Model& model, int node) {
   for (const LinkFrame& link : model.links) {
     const int last = link.beam ? link.beam->tip.node : link.frame.node;

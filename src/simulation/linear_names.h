@@ -1,5 +1,5 @@
 #pragma once
-/// Coordinates of linear models: their names, and how fast they are.
+/// Names and rates of the coordinates of linear models.
 
 #include <string>
 #include <vector>
@@ -10,13 +10,14 @@
 
 namespace flexarm {
 
-/// Of scalars of DegreesOfFreedom, {displacement, spin} of nodes or joint coordinates, then of the rotors of actuators.
+/// Names of scalars of DegreesOfFreedom ({displacement, spin} of nodes, and joint coordinates), then of rotors of
+/// actuators.
 std::vector<std::string> coordinate_names(const Model& model, const DegreesOfFreedom& dof,
                                           const std::vector<int>& scalars, const std::vector<int>& rotors);
 
-/// Velocities for output of all nodes and joint coordinates.
+/// The published velocities of all nodes, joint coordinates and rotors.
 KnownRates published_rates(const Simulation& simulation);
-/// The same with where they are.
+/// The present pose and rotor angles, with these rates.
 MechanismMotion motion_of(const Simulation& simulation);
 
 }  // namespace flexarm

@@ -17,15 +17,15 @@
 
 namespace flexarm {
 
-// ---------------------------------------------------------------- what sensors measure of sections, as nodes move
+// ---------------------------------------------------------------- how sensors of sections change as nodes move
 
 namespace {
 
-/// Derivatives of a scalar by {displacement, spin} of a few nodes, world axes.
+/// Derivatives of a scalar with respect to {displacement, spin} of a few nodes, world axes.
 struct NodalGradient {
   std::vector<int> nodes;
   Eigen::RowVectorXd row;
-  /// `velocities`: {v, w} of all nodes, world axes.
+  /// Rate of the scalar. `velocities`: {v, w} of all nodes, world axes.
   double along(const std::vector<Vector6>& velocities) const;
 };
 
@@ -38,7 +38,7 @@ double NodalGradient::along(const std::vector<Vector6>& velocities) const {
 
 struct SectionVariation {
   std::vector<int> nodes;
-  Eigen::MatrixXd strain, resultant;  // about the mass centroid
+  Eigen::MatrixXd strain, resultant;  // derivatives by the nodes' motion; about the mass centroid
 };
 
 SectionVariation section_variation(const Model& model, const State& state, const ProbePoint& point) {
@@ -57,15 +57,15 @@ SectionVariation section_variation(const Model& model, const State& state, const
   return out;
 }
 
-/// Of fibre_strain(), with local interpolation.
+/// Gradient of fibre_strain(), with local interpolation.
 NodalGradient fibre_strain_gradient(const Model& model, const State& state, const ProbePoint& point) {
   const SectionVariation section = section_variation(model, state, point);
-  // From the mass centroid, beside which the sensor stands, comes K x d.
+  // The sensor is at d from the mass centroid, which adds K x d to the strain.
   const Vector3 beside = point.offset.position;
   return {section.nodes, section.strain.row(0) - so3::hat(beside).row(0) * section.strain.bottomRows<3>()};
 }
 
-/// Of a component of the resultant of section_point() there, with local interpolation.
+/// Gradient of a component of the resultant of section_point() at the point, with local interpolation.
 NodalGradient section_force_gradient(const Model& model, const State& state, const ProbePoint& point, int component) {
   const SectionVariation section = section_variation(model, state, point);
   const Vector3 centroid = model.links[point.link].beam->centroid;
@@ -90,7 +90,7 @@ struct NamedPoint {
   ProbePoint point;
 };
 
-/// Links that can move, ends of beams and probes.
+/// Points at which inputs and outputs may be: links that can move, ends of beams, and probes.
 std::vector<NamedPoint> points_of(const Simulation& simulation) {
   const Model& model = model_of(simulation);
   std::vector<NamedPoint> points;
@@ -109,7 +109,7 @@ std::vector<NamedPoint> points_of(const Simulation& simulation) {
   return points;
 }
 
-/// The kind of sensors that an output of this kind is.
+/// The kind of sensors that measure an output of this kind, if it is measured by sensors.
 std::optional<scene::SensorKind> sensor_kind(Kind kind) {
   if (kind == Kind::Strain) return scene::SensorKind::Strain;
   if (kind == Kind::SectionForce) return scene::SensorKind::SectionForce;
@@ -124,13 +124,13 @@ std::vector<NamedPoint> sensors_of(const Simulation& simulation, scene::SensorKi
   return sensors;
 }
 
-/// Points at which something of this kind may be.
+/// Points at which a port of this kind may be.
 std::vector<NamedPoint> points_of(const Simulation& simulation, Kind kind) {
   if (const auto sensors = sensor_kind(kind)) return sensors_of(simulation, *sensors);
   return kind == Kind::Effort || kind == Kind::Motion ? std::vector<NamedPoint>() : points_of(simulation);
 }
 
-/// Of what is at a point; a strain is one number.
+/// Names of the components of a port at a point. A strain has a single one, without a name.
 std::vector<std::string> components_of(Kind kind) {
   if (kind == Kind::Strain) return {""};
   const Components& names = kind == Kind::Wrench || kind == Kind::SectionForce ? kWrench : kPlaces;
@@ -145,7 +145,7 @@ bool is_of_coordinates(Kind kind) {
   return kind != Kind::Wrench && !sensor_kind(kind);
 }
 
-/// What may stand behind a kind's colon, for errors.
+/// Lists the names that may follow the colon of this kind, for error messages.
 std::string existing(const Simulation& simulation, Kind kind) {
   std::vector<std::string> names;
   const auto& coordinates = simulation.coordinate_names();
@@ -168,13 +168,13 @@ class PortReader {
     const std::optional<Kind> kind = kind_of(text.substr(0, colon));
     if (!kind || colon == std::string::npos)
       throw std::invalid_argument(
-          fmt::format("'{}' is no {}: expected {}", text, is_input_ ? "input" : "output",
+          fmt::format("'{}' is not an {}: expected {}", text, is_input_ ? "input" : "output",
                       is_input_ ? "effort:JOINT, motion:JOINT or wrench:POINT:fx"
                                 : "position:, velocity: or acceleration: and a joint or a point, effort:JOINT, "
                                   "strain:SENSOR or section_force:SENSOR"));
     const std::string name = text.substr(colon + 1);
     if (add_coordinate(*kind, name, text, ports) || add_point(*kind, name, text, ports)) return;
-    throw std::invalid_argument(fmt::format("'{}' does not exist: of '{}:' {}", text, text.substr(0, colon),
+    throw std::invalid_argument(fmt::format("'{}' does not exist: for '{}:' {}", text, text.substr(0, colon),
                                             existing(simulation_, driven_effort(*kind) ? Kind::Motion : *kind)));
   }
 
@@ -239,10 +239,10 @@ std::vector<LinearPort> read(const Simulation& simulation, bool is_input, const 
   return ports;
 }
 
-/// Of a port's place, by the rates of all scalars and by {v, w} of the nodes, world axes.
+/// Rate of a port's quantity, from the rates of all scalars and {v, w} of the nodes, world axes.
 using PortRate = std::function<double(const Eigen::VectorXd& scalars, const std::vector<Vector6>& velocities)>;
 
-/// `state`: must outlive what is returned.
+/// `state` must outlive the returned function.
 PortRate rate_of(const LinearPort& port, const Model& model, const DegreesOfFreedom& dof, const State& state) {
   if (port.coordinate >= 0)
     return [scalar = dof.scalar_of(model.coordinates[port.coordinate])](const Eigen::VectorXd& scalars, const auto&) {
@@ -274,7 +274,7 @@ std::vector<LinearPort> output_ports(const Simulation& simulation, const std::ve
   for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i)
     if (!is_driven(simulation, i)) positions.push_back("position:" + simulation.coordinate_names()[i]);
   std::vector<LinearPort> ports = read(simulation, false, positions);
-  // Not by name, which a joint or a link might have as well.
+  // Not read by name, since a joint or a link may have the same name.
   const auto& probes = simulation.scene().probes;
   for (std::size_t i = 0; i < probes.size(); ++i)
     for (int k = 0; k < 6; ++k) {
@@ -315,7 +315,7 @@ MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dyn
     matrix->conservativeResize(Eigen::NoChange, dynamics.size());
     matrix->rightCols(dynamics.size() - own).setZero();
   }
-  // A motor behind an elastic gear gives its effort to its rotor.
+  // A motor with an elastic gear acts on its rotor.
   for (std::size_t i = 0; i < ports.size(); ++i)
     for (std::size_t r = 0; r < dynamics.rotors().size() && ports[i].kind == Kind::Effort; ++r) {
       if (model.actuators[dynamics.rotors()[r]].coordinate != ports[i].coordinate) continue;

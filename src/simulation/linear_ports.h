@@ -9,28 +9,32 @@
 
 namespace flexarm {
 
-/// An input or an output: one scalar of the mechanism.
+/// An input or an output of a linear model: one scalar of the mechanism.
 struct LinearPort {
   enum class Kind { Effort, Motion, Wrench, Position, Velocity, Acceleration, Strain, SectionForce };
   Kind kind = Kind::Effort;
-  int coordinate = -1;  ///< of Model::coordinates; -1: a point
-  ProbePoint point;     ///< of a sensor, too
-  int component = 0;    ///< of the point
+  int coordinate = -1;  ///< index into Model::coordinates; -1: the port is at a point
+  ProbePoint point;     ///< also the point of a sensor
+  int component = 0;    ///< of the quantity at the point
   std::string name;     ///< as users write it, with the component
 };
 
+/// If `names` is empty: the efforts of all coordinates that take commands.
 /// @throws std::invalid_argument if there is no such input.
 std::vector<LinearPort> input_ports(const Simulation& simulation, const std::vector<std::string>& names);
+/// If `names` is empty: positions of all coordinates that are not driven, and of all probes.
 /// @throws std::invalid_argument if there is no such output.
 std::vector<LinearPort> output_ports(const Simulation& simulation, const std::vector<std::string>& names);
 
-/// How the places of the ports move with the dynamics' coordinates, a row for each; rotors' columns included.
+/// How the quantities of the ports change with the coordinates of `dynamics`: a row per port, a column per coordinate,
+/// rotors included.
 MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dynamics,
                          const std::vector<LinearPort>& ports);
 
-/// Values of outputs (port_values.cpp); rotations of points as small ones from where `reference` has them, world axes.
-/// @throws std::invalid_argument for accelerations of joints, and what sections of beams feel, which are not
-/// differences of what a simulation puts out.
+/// Values of outputs (port_values.cpp). Rotations of points are small rotations from their orientations in `reference`,
+/// world axes.
+/// @throws std::invalid_argument for accelerations of joints, strains and section forces, which have no sensitivities:
+/// they are not computed from results of a simulation.
 Eigen::VectorXd port_values(const Simulation& simulation, const Simulation& reference,
                             const std::vector<LinearPort>& ports);
 

@@ -20,12 +20,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Poles that decay more slowly than this part of the largest do not where nothing better is known: round-off splits a
-/// double pole at 0, as every free motion has one, by as much. And with a smaller damping ratio none does.
+/// Poles decay if their real part is below -kDecaying times the largest |pole|. Slower ones are doubtful: every free
+/// motion has a double pole at 0, which round-off splits by as much.
 const double kDecaying = std::sqrt(std::numeric_limits<double>::epsilon());
+/// If all poles have larger damping ratios than this one, and none is 0 within round-off, all of them decay.
 constexpr double kDamped = 1e-6;
 
-/// The states x = basis z of what has other poles than the rest, z = projection x.
+/// The invariant subspace of some poles: x = basis z, z = projection x.
 struct Part {
   MatrixXd basis, projection;
 };
@@ -34,7 +35,7 @@ struct Parts {
   Part kept, decaying;
 };
 
-/// `zero`: see ScaledStates; `slowest`: no decay that is faster is doubted [1/s].
+/// `zero`: see ScaledStates. `slowest`: poles that decay faster than this are not doubtful [1/s].
 Parts parts_of(const MatrixXd& a, double zero, double slowest) {
   const auto decays = [&](std::complex<double> pole) {
     const double size = std::abs(pole);
@@ -42,7 +43,7 @@ Parts parts_of(const MatrixXd& a, double zero, double slowest) {
   };
   Parts parts;
   parts.kept.basis = invariant_subspace(a, [&](std::complex<double> pole) { return !decays(pole); });
-  if (parts.kept.basis.cols() == 0) {  // other coordinates than the scaled ones would cost digits
+  if (parts.kept.basis.cols() == 0) {  // the scaled states themselves, since other coordinates would cost digits
     parts.kept.projection = MatrixXd(0, a.rows());
     parts.decaying.basis = parts.decaying.projection = MatrixXd::Identity(a.rows(), a.cols());
     return parts;
@@ -56,14 +57,14 @@ Parts parts_of(const MatrixXd& a, double zero, double slowest) {
   return parts;
 }
 
-/// Smaller Hankel singular values than this part of the largest are round-off: those states are neither reached nor
-/// seen.
+/// Hankel singular values below this part of the largest are round-off: inputs do not reach these states, or outputs do
+/// not see them.
 constexpr double kSeen = 1e-14;
 
 struct BalancedPart {
   GramianRoots roots;
   SingularValues hankel;
-  Index seen = 0;  ///< singular values that are no round-off
+  Index seen = 0;  ///< number of singular values above round-off
 };
 
 BalancedPart balance(const Part& part, const MatrixXd& a, const MatrixXd& b, const MatrixXd& c) {
@@ -76,7 +77,7 @@ BalancedPart balance(const Part& part, const MatrixXd& a, const MatrixXd& b, con
   return out;
 }
 
-/// Of the part's `order` states that inputs reach and outputs see most.
+/// The `order` states of the part that inputs reach and outputs see most.
 Part truncated(const Part& part, const BalancedPart& balanced, Index order) {
   if (order == 0) return {MatrixXd(part.basis.rows(), 0), MatrixXd(0, part.basis.rows())};
   const auto& [roots, hankel, seen] = balanced;

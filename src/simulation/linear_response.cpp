@@ -36,7 +36,7 @@ StepResponse step_response(const LinearModel& model, double until, int intervals
   if (!(until > 0 && std::isfinite(until)))
     throw std::invalid_argument(fmt::format("until: expected a time > 0, got {}", until));
   if (intervals < 1) throw std::invalid_argument(fmt::format("intervals: expected a number >= 1, got {}", intervals));
-  // Constant inputs are states that stay: exp([a b; 0 0] t) has what they make of the others.
+  // Add the constant inputs as states with zero rate: then exp([a b; 0 0] t) contains their effect on the other states.
   const ScaledStates scaled = scaled_states(model);
   const Eigen::Index count = scaled.a.rows(), inputs = scaled.b.cols();
   const double interval = until / intervals;
@@ -47,8 +47,7 @@ StepResponse step_response(const LinearModel& model, double until, int intervals
   MatrixXd states = MatrixXd::Zero(count, inputs);
   for (int n = 0; n <= intervals; ++n) {
     if (n > 0) states += (change.leftCols(count) * states + change.rightCols(inputs)).eval();
-    if (!states.allFinite())
-      throw std::runtime_error(fmt::format("the response grows beyond all numbers in {} s", until));
+    if (!states.allFinite()) throw std::runtime_error(fmt::format("the response overflows within {} s", until));
     response.times.push_back(n == intervals ? until : n * interval);
     response.outputs.push_back(scaled.c * states + model.d);
   }

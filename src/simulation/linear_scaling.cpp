@@ -23,15 +23,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
-/// A stiffness that is not above so many times the round-off of its terms is none.
+/// A stiffness is zero if it is not larger than this many times the round-off of its terms.
 constexpr double kAboveRoundOff = 100;
 
-/// Positions y = shapes q, and q = coordinates y.
+/// Mode shapes and modal coordinates: positions y = shapes q, and q = coordinates y.
 struct Shapes {
   MatrixXd shapes, coordinates;
 };
 
-/// Of the positions that have accelerations of their own: places among coordinates; empty: not all are coordinates.
+/// For each of these position states, its index among the model's coordinates. Empty if one of them is no coordinate.
 std::vector<Index> places_of(const LinearModel& model, const std::vector<Index>& states) {
   std::vector<Index> places;
   for (const Index state : states) {
@@ -43,10 +43,10 @@ std::vector<Index> places_of(const LinearModel& model, const std::vector<Index>&
   return places;
 }
 
-/// Vectors of no length but 1 in the norm of the mass, the stiffest first; none if it is not positive.
+/// Modes with unit norm in the mass matrix, the stiffest first. None if the mass matrix is not positive definite.
 std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) {
   if (!(mass.diagonal().minCoeff() > 0)) return std::nullopt;
-  // Translations and rotations of thin beams have masses of very different sizes.
+  // The scales are needed since translations and rotations of thin beams have masses of very different sizes.
   const VectorXd scales =
       mass.diagonal().unaryExpr([](double m) { return std::exp2(std::round(-0.5 * std::log2(m))); });
   const MatrixXd m = scales.asDiagonal() * mass * scales.asDiagonal();
@@ -56,7 +56,7 @@ std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) 
   const MatrixXd whitening = masses.vectors * masses.values.cwiseSqrt().cwiseInverse().asDiagonal();
   MatrixXd shapes = whitening * symmetric_eigenpairs(whitening.transpose() * k * whitening).vectors;
   MatrixXd modal = shapes.transpose() * k * shapes;
-  // Soft modes are mixed by the round-off of the stiff ones; the stiffness itself knows them better.
+  // Round-off of the stiff modes has mixed the soft ones. The modal stiffness is accurate enough to separate them.
   diagonalise(modal, shapes);
   std::vector<Index> order(static_cast<std::size_t>(modal.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -68,7 +68,7 @@ std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) 
                 square_solution(projection * sorted, projection) * scales.cwiseInverse().asDiagonal()};
 }
 
-/// x = {y, y'}, as inputs change y'' alone.
+/// Whether x = {y, y'}, and inputs only change y''.
 bool is_of_second_order(const LinearModel& model) {
   const Index count = model.positions;
   return 2 * count == model.a.rows() && model.mass.rows() == static_cast<Index>(model.coordinates.size()) &&
@@ -76,7 +76,8 @@ bool is_of_second_order(const LinearModel& model) {
          model.a.topRightCorner(count, count) == MatrixXd::Identity(count, count);
 }
 
-/// Of all positions; those without an acceleration of their own, which an input drives, come last as they are.
+/// Shapes of all positions. Positions that an input drives have no acceleration of their own; they come last,
+/// unchanged.
 std::optional<Shapes> shapes_of(const LinearModel& model) {
   const Index count = model.positions;
   if (count == 0 || !is_of_second_order(model)) return std::nullopt;
@@ -99,14 +100,15 @@ std::optional<Shapes> shapes_of(const LinearModel& model) {
   return out;
 }
 
-/// Of each mode position and rate beside each other. Terms of slow modes cancel, which more digits than those of the
-/// matrices are spent on, so that nothing is lost of these.
+/// States in modal coordinates: position and rate of each mode side by side. In the products, large terms of slow modes
+/// cancel. So these are computed with more digits than the matrices have, and none of the matrices' digits is lost.
 ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
   using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Index count = model.positions;
   const Long shapes = modes.shapes.cast<long double>();
+  // One iteration of Newton's method makes this the inverse of `shapes` with more digits.
   Long coordinates = modes.coordinates.cast<long double>();
-  coordinates = (coordinates * (2 * Long::Identity(count, count) - shapes * coordinates)).eval();  // Newton's method
+  coordinates = (coordinates * (2 * Long::Identity(count, count) - shapes * coordinates)).eval();
   const auto in_modes = [&](const auto& rows) -> MatrixXd {
     const Long seen = rows.template cast<long double>() * shapes;
     return (coordinates * seen).template cast<double>();
@@ -170,7 +172,7 @@ ScaledStates scaled_states(const LinearModel& model) {
   }
   Balanced balanced = flexarm::balanced(std::move(out.a));
   out.a = std::move(balanced.matrix);
-  // A double pole is split by the root of what eigenvalue solvers leave.
+  // The error of an eigenvalue solver splits a double pole by its square root.
   if (out.zero > 0) out.zero = std::max(out.zero, std::sqrt(kAboveRoundOff * kRoundOff * out.a.norm()));
   out.basis = out.basis * balanced.scales.asDiagonal();
   out.inverse = balanced.scales.cwiseInverse().asDiagonal() * out.inverse;

@@ -12,9 +12,9 @@
 namespace flexarm {
 namespace {
 
-/// What loops give way by, over the inverse of the whole mass. At a dead point, where constraints depend on each other,
-/// and near it, no velocity changes by more than some hundred times what is to be closed. Elsewhere each round leaves
-/// about this part of an opening.
+/// Compliance of the loops, relative to the inverse of the whole mass. At and near a dead point the constraints depend
+/// on each other. The compliance makes sure that no velocity changes by more than some hundred times the rate that is
+/// to be removed. Elsewhere each round leaves about this part of an opening.
 constexpr double kGive = 1e-4;
 constexpr int kRounds = 6;
 
@@ -31,13 +31,13 @@ double rate_of(const LoopClosure& closure, const ClosureRows& rows, const std::v
   return closure.parent < 0 ? of_child : of_child + rows.parent.dot(velocities[closure.parent]);
 }
 
-/// Of a released coordinate.
+/// The tangent's diagonal entry of a released coordinate.
 double& diagonal(const Model& model, const DegreesOfFreedom& dof, SparseTangent& tangent, int joint, int component) {
   const int count = released_count(model.joints[joint].kind);
   return tangent.diagonal_block(dof.variable_of_joint(joint))[component * count + component];
 }
 
-/// At a state, for no residual.
+/// Maps of all joints at a state, for a zero residual.
 JointMaps joint_maps(const Model& model, const DegreesOfFreedom& dof, const State& state) {
   JointMaps maps;
   std::vector<NodePose> nodes;
@@ -61,8 +61,8 @@ JointMaps joint_maps(const Model& model, const DegreesOfFreedom& dof, const Stat
   return maps;
 }
 
-/// What resists accelerations of nodes and coordinates, slaves not yet folded; of rotors those that turn with their
-/// coordinates.
+/// Adds the mass matrix of nodes and coordinates, before slaves are folded. Of the rotors it contains those that turn
+/// with their coordinates.
 void add_mass(const Model& model, const DegreesOfFreedom& dof, const State& state, SparseTangent& mass) {
   for_each_element(model.beams,
                    [&](const auto& element) { add_element(mass, element.first_block, mass_matrix(element, state)); });
@@ -77,7 +77,7 @@ void add_mass(const Model& model, const DegreesOfFreedom& dof, const State& stat
     diagonal(model, dof, mass, terms.joint, terms.component) += terms.mass;
 }
 
-/// Slaves and coordinates that follow others.
+/// Folds slaves into their masters, and coordinates that follow others into these.
 void fold(const Model& model, const JointMaps& maps, SparseTangent& tangent) {
   for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
     if (model.joints[j].kind == JointMapKind::Slide)
@@ -89,7 +89,7 @@ void fold(const Model& model, const JointMaps& maps, SparseTangent& tangent) {
   tangent.finish();
 }
 
-/// M and B in one matrix, of all unknowns of a step.
+/// The mass matrix M and the constraint matrix B in one system, for all unknowns of a step.
 class ClosingImpulses {
  public:
   ClosingImpulses(const Model& model, const DegreesOfFreedom& dof, const State& state,
@@ -115,7 +115,7 @@ class ClosingImpulses {
     is_solvable_ = system_.factorise();
   }
 
-  /// Adds what closes the loops of these velocities; false if that cannot be told.
+  /// Adds the change of velocities that closes the loops. Returns false if the equations have no solution.
   bool close(const std::vector<Vector6>& velocities, VelocityChange& change) {
     if (!is_solvable_) return false;
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(dof_.unknowns);
@@ -175,7 +175,7 @@ std::vector<Vector6> sum(std::vector<Vector6> velocities, const VelocityChange& 
   return velocities;
 }
 
-/// Spins at the mass points of beams that go with those of their nodes.
+/// Angular velocities at the mass points of beams, interpolated from those of the nodes.
 std::vector<MassPointState> mass_points(const Model& model, const std::vector<NodePose>& poses,
                                         const std::vector<Vector6>& velocities) {
   Model placed = model;
@@ -240,7 +240,7 @@ State with_closed_loops(const Model& model, const DegreesOfFreedom& dof, State s
     state.mass_points[i].angular_velocity += turned[i].angular_velocity;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
-    if (actuator.drive.gear) continue;  // no impulse passes through an elastic one
+    if (actuator.drive.gear) continue;  // no impulse passes through an elastic gear
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];
     if (is_held(model, coordinate)) continue;
     state.actuators[i].rate += change.rates[coordinate.joint][coordinate.component];

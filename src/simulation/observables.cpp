@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-/// Section pose at the parent coordinate xi, nodes on the mass centroid.
+/// Pose of a section at the parent coordinate xi; nodes are on the mass centroid.
 template <int Nodes>
 Pose section_pose(const std::array<Vector3, Nodes>& positions, const LocalRotations<Nodes>& local, double xi) {
   const ShapeFunctions<Nodes> functions = lagrange<Nodes>(xi);
@@ -21,7 +21,7 @@ Pose section_pose(const std::array<Vector3, Nodes>& positions, const LocalRotati
   return {interpolate<Nodes>(functions.values, positions), Quaternion(rotation).normalized()};
 }
 
-/// From the values at the stiffness points.
+/// Value at xi of the polynomial through the values at the stiffness points.
 template <int Nodes>
 Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
   const std::array<double, Nodes - 1> weights = extension_weights<Nodes>(xi);
@@ -30,8 +30,9 @@ Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
   return sum;
 }
 
-/// From the mass centroid, at c in the section, to the reference line, by which the section turns: there
-/// r = r_c - Lambda c, hence Gamma = Gamma_c + c x K, and with the same virtual work N = N_c, M = M_c + c x N.
+/// Converts strain and resultant from the mass centroid, which is at c in the section, to the reference line. With
+/// r = r_c - Lambda c it follows that Gamma = Gamma_c + c x K, and, since the virtual work is the same, N = N_c,
+/// M = M_c + c x N.
 void set_stress(const Vector6& strain, const Vector6& resultant, const Vector3& centroid, BeamPoint& point) {
   point.strain = strain;
   point.strain.head<3>() += centroid.cross(strain.tail<3>());
@@ -39,7 +40,7 @@ void set_stress(const Vector6& strain, const Vector6& resultant, const Vector3& 
   point.resultant.tail<3>() += centroid.cross(point.resultant.head<3>());
 }
 
-/// What all points of an element share.
+/// The quantities that all points of an element share.
 template <int Nodes>
 struct DeformedElement {
   DeformedElement(const Model& model, const BeamElement<Nodes>& element, const State& state)
@@ -51,7 +52,8 @@ struct DeformedElement {
     }
   }
 
-  /// Without its pose. `centroid`: in the section; `begin`, `end`: arc lengths of the element's ends [m].
+  /// Strain and resultant at xi, without the pose. `centroid`: its place in the section. `begin`, `end`: arc lengths of
+  /// the element's ends [m].
   BeamPoint stress(double xi, const Vector3& centroid, double begin, double end) const {
     BeamPoint point;
     point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
@@ -70,8 +72,8 @@ struct DeformedElement {
   std::array<Vector6, Nodes - 1> strains, resultants;
 };
 
-/// `visit(deformed element, xi, arc length at the element's beginning, at its end)` of every node of a beam, and of
-/// `between` points inside each pair of nodes.
+/// Calls `visit(deformed element, xi, arc length of the element's beginning, of its end)` for every node of a beam, and
+/// for `between` points inside each pair of neighbouring nodes.
 template <class Visit>
 void visit_points(const Model& model, const State& state, const BeamLink& beam, int between, const Visit& visit) {
   double begin = 0;
@@ -142,7 +144,7 @@ BeamPoint section_point(const Model& model, const State& state, const BeamLink& 
 double fibre_strain(const Model& model, const State& state, const ProbePoint& point) {
   const BeamLink& beam = *model.links[point.link].beam;
   const Vector6 strain = section_point(model, state, beam, point.element, point.xi).strain;
-  // The sensor stands beside the mass centroid, the strain is about the reference line.
+  // The sensor's offset is from the mass centroid, the strain is about the reference line.
   const Vector3 beside = beam.centroid + point.offset.position;
   return strain[0] + strain.tail<3>().cross(beside)[0];
 }
@@ -206,8 +208,9 @@ ProbeState probe_state(const Model& model, const State& state, const std::vector
   return out;
 }
 
-State initial_state(const Model& model) {
+State initial_state(const Model& model, double time) {
   State state;
+  state.time = time;
   state.nodes.resize(model.nodes.size());
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     NodeState& node = state.nodes[i];
@@ -230,8 +233,11 @@ State initial_state(const Model& model) {
   for (const auto& element : model.force_elements) memory += element->memory_size();
   state.force_memory.assign(memory, 0.0);
   double* own_memory = state.force_memory.data();
+  std::vector<double> functions;
   for (const auto& element : model.force_elements) {
-    element->start(state, own_memory);
+    functions.clear();
+    for (const int history : element->functions()) functions.push_back(model.histories[history](state.time));
+    element->start(state, functions.data(), own_memory);
     own_memory += element->memory_size();
   }
   state.rests.assign(model.coordinates.size(), 0.0);

@@ -10,33 +10,33 @@
 
 namespace flexarm {
 
-/// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
+/// Appends to `points` every node, and `between` equally spaced points inside each pair of nodes.
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points);
 
-/// The sections of a rigid line whose link is there, without resultants; appended to `points`.
+/// Appends to `points` the sections of a rigid line, without resultants. `link`: the pose of its link.
 void rigid_points(const RigidLine& line, const Pose& link, std::vector<BeamPoint>& points);
 
-/// The sections of the points of beam_points() in the model's initial configuration, in the link's frame; the link is
+/// Poses of the sections of beam_points() in the model's initial configuration, in the link's frame. The link is
 /// flexible.
 std::vector<Pose> undeformed_sections(const Model& model, const LinkFrame& link, int between);
 
-/// The largest strain of a beam's edge at its nodes, see edge_strain(), and the arc length where it is [m].
+/// The largest edge strain of a beam at its nodes (see edge_strain()), and its arc length [m].
 struct EdgeStrain {
   double amount = 0, arc_length = 0;
 };
 EdgeStrain largest_edge_strain(const Model& model, const State& state, const BeamLink& beam);
 
-/// The section of a beam at the shape parameter `xi` of one of its elements.
+/// The section of a beam at the parameter `xi` in [-1, 1] of one of its elements.
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi);
 
-/// Strain of the fibre through a point of a beam's section, along the line, per length of the undeformed reference line
-/// [-]. The point is inside an element.
+/// Strain along the line of the fibre through a point of a beam's section, per length of the undeformed reference line
+/// [-]. The point must be inside an element.
 double fibre_strain(const Model& model, const State& state, const ProbePoint& point);
 
-/// About the origin of the state; of a point on the world, about that of the model.
+/// Pose relative to the origin of the state. For a point on the world, relative to the model's origin.
 Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe);
-/// Where in the world that is what probe_pose() is about.
+/// The world position of the origin to which probe_pose() is relative.
 Vector3 probe_origin(const Model& model, const State& state, const ProbePoint& probe);
 Pose pose_in_world(const Model& model, const State& state, const ProbePoint& probe);
 /// `velocities`: {v, w} per node, world axes.
@@ -47,6 +47,6 @@ ProbeState probe_state(const Model& model, const State& state, const std::vector
 Pose attached_pose(const State& state, const Attachment& attachment);
 
 /// The state at the start: the model's initial configuration and velocities.
-State initial_state(const Model& model);
+State initial_state(const Model& model, double time = 0);
 
 }  // namespace flexarm

@@ -17,7 +17,7 @@
 namespace flexarm {
 namespace {
 
-/// In SourceLocation::file of a <no_contact> of what is attached; detaching takes it away.
+/// Marks, as SourceLocation::file, the <no_contact> pairs that attach() adds, so that detach() can remove them.
 constexpr const char* kByAttaching = "attached";
 
 std::size_t link_index(const Simulation& simulation, const std::string& name) {
@@ -27,13 +27,13 @@ std::size_t link_index(const Simulation& simulation, const std::string& name) {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// Where a fixed joint between two links stands.
+/// The place of a fixed joint between two links.
 struct JointPlace {
-  Attachment parent;          ///< node of the parent, and the joint's frame seen from it
-  Pose origin, child_origin;  ///< the joint's frame in those of both links, undeformed
+  Attachment parent;          ///< a node of the parent, and the joint's frame relative to this node
+  Pose origin, child_origin;  ///< the joint's frame relative to each link, undeformed
 };
 
-/// Nodes between elements, and at both ends.
+/// Nodes at the borders between a beam's elements, and at its ends.
 std::vector<int> borders_of(const Model& model, const BeamLink& beam) {
   std::vector<int> borders;
   for_each_group(model.beams, [&](const auto& group) {
@@ -47,7 +47,8 @@ std::vector<int> borders_of(const Model& model, const BeamLink& beam) {
   return borders;
 }
 
-/// At the child's frame, or at the section of a flexible parent that is nearest to it.
+/// The joint is at the child's frame. On a flexible parent it is at the border between elements that is nearest to that
+/// frame.
 JointPlace place_on(const Simulation& simulation, std::size_t parent, std::size_t child) {
   const Model& model = model_of(simulation);
   const State& state = state_of(simulation);
@@ -59,7 +60,7 @@ JointPlace place_on(const Simulation& simulation, std::size_t parent, std::size_
   const std::vector<int> borders = borders_of(model, *on.beam);
   const int node =
       *std::min_element(borders.begin(), borders.end(), [&](int a, int b) { return distance(a) < distance(b); });
-  // The reference line passes there; nodes lie at the mass centroid.
+  // The section's frame is on the reference line, whereas nodes are at the mass centroid.
   const Pose section{-on.beam->centroid, Quaternion::Identity()};
   const State undeformed = initial_state(model);
   const Pose origin = attached_pose(undeformed, on.frame).inverse() * attached_pose(undeformed, {node, section});
@@ -67,7 +68,7 @@ JointPlace place_on(const Simulation& simulation, std::size_t parent, std::size_
   return {{node, section}, origin, attached_pose(state, model.links[child].frame).inverse() * now};
 }
 
-/// How a link moves at the start.
+/// Pose and velocity of a link at the start.
 scene::LinkStart start_of(const Simulation& simulation, std::size_t index) {
   const Model& model = model_of(simulation);
   const State& state = initial_state_of(simulation);
@@ -110,7 +111,7 @@ void require_free(const scene::SceneDescription& scene, const std::string& link,
         fmt::format("link '{}' does not float freely: a <{}> acts upon its joint '{}'", link, *what, joint->name));
 }
 
-/// Links that are one body with this one.
+/// Links that form one body with this link, by fixed joints.
 std::set<std::string> body_of(const scene::SceneDescription& scene, const std::string& link) {
   std::set<std::string> body{link};
   for (bool grows = true; grows;) {
@@ -161,7 +162,7 @@ void detach(Simulation& simulation, const std::string& link) {
     throw std::invalid_argument(fmt::format("link '{}' floats: it is attached to nothing", link));
   if (joint->kind != scene::JointKind::Fixed)
     throw std::invalid_argument(
-        fmt::format("link '{}' hangs on joint '{}', which is none of type 'fixed'", link, joint->name));
+        fmt::format("link '{}' hangs on joint '{}', which is not of type 'fixed'", link, joint->name));
   const std::set<std::string> branch = scene::branch_of(scene, link);
   auto& pairs = scene.no_contacts;
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),

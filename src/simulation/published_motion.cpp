@@ -11,19 +11,19 @@
 
 namespace flexarm {
 
-// ---------------------------------------------------------------- how far two changes, one after the other, agree
+// ---------------------------------------------------------------- how well two successive changes agree
 
-// What is extrapolated for output has no overshoot and does not ring.
+// With these criteria, values that are extrapolated for output do not overshoot or ring.
 
 namespace {
 
-/// They differ by less than a third of their sum: one is at most twice the other.
+/// Whether the changes differ by at most a third of their sum. Then one is at most twice the other.
 template <class Change>
 bool belong_to_smooth_motion(const Change& last, const Change& before) {
   return (last - before).norm() <= 1.0 / 3 * (last + before).norm();
 }
 
-/// The part of the last change that the change before has, too; zero if they have opposite signs.
+/// The part of the last change that is also in the change before it. Zero if they have opposite signs.
 template <class Change>
 Change agreed_part(const Change& last, const Change& before) {
   const double agreement = last.dot(before);
@@ -36,11 +36,11 @@ Change agreed_part(const Change& last, const Change& before) {
 
 namespace {
 
-/// Turns that are larger have no tangent-scaled increment to speak of [rad].
+/// Larger turns are not converted to tangent-scaled increments, which tend to infinity at a turn of pi [rad].
 constexpr double kLargestTurn = 0.5 * kPi;
 
-/// The increment of a scalar coordinate as the rule for angular velocities counts it. A motion is what its function
-/// says.
+/// The increment of a scalar coordinate, tangent-scaled if the rule for angular velocities is. Increments of prescribed
+/// motions are not converted: the motion's function gives the velocity.
 double counted_increment(const TimeRule& rule, const JointMap& joint, const Coordinate& coordinate, double increment) {
   const double rotation = joint.kind == JointMapKind::Scalar ? joint.rotation.norm() : 0, turn = rotation * increment;
   const bool counts = rule.body_rotation == RotationRule::TangentScaled && coordinate.motion < 0 && rotation > 0 &&
@@ -54,8 +54,8 @@ template <int Size>
 Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mean) const {
   using Rate = Eigen::Matrix<double, Size, 1>;
   const auto& [h0, h1, h2, h3] = length;
-  // From the mean of the newest step to its end, by the change of the mean since the step before, and the same by the
-  // changes before that.
+  // Extrapolate from the mean rate of the newest step to its end. `last` uses the change of the mean rate since the
+  // step before, `before` and `earlier` the changes before that.
   const Rate last = h0 / (h0 + h1) * (mean[0] - mean[1]);
   if (count < 3) return mean[0] + last;
   const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
@@ -71,7 +71,7 @@ void OutputVelocities::update_rates(const Model& model, const DegreesOfFreedom& 
                                     const State& state) {
   poses_.resize(state.nodes.size());
   nodes_.resize(state.nodes.size());
-  rates_.assign(model.joints.size_with_held(), ReleasedVector::Zero(1));  // those of held joints
+  rates_.assign(model.joints.size_with_held(), ReleasedVector::Zero(1));  // the rates of held joints stay zero
   const IncrementHistory& history = state.history;
   has_steps_ = history.holds_for(dof.unknowns) && history.count >= 2;
   if (has_steps_) {
@@ -87,7 +87,7 @@ void OutputVelocities::update_rates(const Model& model, const DegreesOfFreedom& 
 
 void OutputVelocities::update_nodes(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
                                     const State& state) {
-  if (!has_steps_) return;  // they are those from which the rates were taken
+  if (!has_steps_) return;  // update_rates() has already set the scheme's own velocities
   set_poses(state);
   set_free_nodes(dof, rule, state);
   set_slaves(model, state);
@@ -116,7 +116,8 @@ void OutputVelocities::set_free_nodes(const DegreesOfFreedom& dof, const TimeRul
 
 void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
                                  const State& state) {
-  // What a coordinate made of a step that ended at `end`; a prescribed one is no unknown, but its motion is known.
+  // The increment of a coordinate in a step that ended at `end`. A prescribed coordinate is no unknown: its motion
+  // gives the increment.
   const auto increment = [&](const Coordinate& coordinate, int k, double end) {
     const int equation = dof.equation[dof.scalar_of(coordinate)];
     if (equation >= 0) return state.history.increments[k][equation];
@@ -146,7 +147,7 @@ void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof
     if (rates.size() == 1) rates = steps_.rate_at_end<1>(scalar);
     for (int c = 0; c + 3 <= rates.size(); c += 3) rates.segment<3>(c) = steps_.rate_at_end<3>(vectors[c / 3]);
   }
-  // No entry's master is the slave of an earlier one.
+  // From the back, since an entry's master never follows in an earlier entry.
   for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
     const Coordinate& following = model.coordinates[mimic->coordinate];
     const Coordinate& followed = model.coordinates[following.mimicked];
@@ -166,8 +167,8 @@ void OutputVelocities::set_slaves(const Model& model, const State& state) {
 
 namespace {
 
-/// By which something goes on to change, as its last two rates of change have it: their mean, or the lesser of both as
-/// far as they agree.
+/// How a quantity goes on changing, from its last two rates of change: their mean if the motion is smooth, else the
+/// part in which they agree.
 Vector3 agreed(const Vector3& last, const Vector3& before) {
   return belong_to_smooth_motion(last, before) ? Vector3(0.5 * (last + before)) : agreed_part(last, before);
 }
@@ -177,7 +178,7 @@ Vector3 increment(const State& state, int step, int equation) {
                       : Vector3(Eigen::Map<const Vector3>(state.history.increments[step].data() + equation));
 }
 
-/// Rotates back by a tangent-scaled increment.
+/// Undoes a rotation by a tangent-scaled increment.
 Quaternion turned_back(const Quaternion& orientation, const Vector3& by) {
   return (cayley::quaternion(Vector3(-by)) * orientation).normalized();
 }
@@ -186,7 +187,7 @@ Quaternion turned_back(const Quaternion& orientation, const Vector3& by) {
 
 Vector3 MeanRates::change_at_end() const {
   if (count < 2) return Vector3::Zero();
-  std::array<double, kMost> middle;  // of the steps, counted from the end
+  std::array<double, kMost> middle;  // of the steps; times relative to the end of the newest one
   double end = 0;
   for (int k = 0; k < count; ++k) {
     middle[k] = end - 0.5 * length[k];
@@ -194,7 +195,7 @@ Vector3 MeanRates::change_at_end() const {
   }
   const auto slope = [&](int i, int k) { return Vector3((rate[i] - rate[k]) / (middle[i] - middle[k])); };
   if (count == 2) return slope(0, 1);
-  // Means of two steps have lost what alternates.
+  // The mean slope over two steps, in which anything that alternates from step to step cancels.
   Vector3 mean = slope(0, 2);
   if (count == 3) return mean;
   const auto place = [&](int i) { return 0.5 * (middle[i] + middle[i + 1]); };
@@ -221,7 +222,7 @@ void PastMotion::update(const MotionView& view) {
   }
 }
 
-/// Takes one step back, to time `begin` [s].
+/// Goes back by one step, which began at time `begin` [s].
 void PastMotion::go_back(const MotionView& view, int step, double begin) {
   const auto& [model, dof, rule, state] = view;
   for (int i = 0; i < dof.node_count; ++i) {
@@ -243,7 +244,7 @@ void PastMotion::go_back(const MotionView& view, int step, double begin) {
       released.displacement[coordinate.component] -= state.history.increments[step][equation];
     }
   }
-  // No entry's master is the slave of an earlier one.
+  // From the back, since an entry's master never follows in an earlier entry.
   for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
     const Coordinate& following = model.coordinates[mimic->coordinate];
     earlier_.released[following.joint].displacement[0] =
@@ -254,7 +255,8 @@ void PastMotion::go_back(const MotionView& view, int step, double begin) {
     poses_[slave] = slave_pose(model, static_cast<int>(j), poses_, earlier_.released[j]);
     NodeState& node = earlier_.nodes[slave];
     node.position = poses_[slave].position;
-    // Which of two opposite quaternions it is tells how far an element is bent (LocalRotations).
+    // The sign of the quaternion matters: of two opposite quaternions, only one shows how far an element is bent
+    // (LocalRotations).
     node.orientation = so3::nearer_of_two(poses_[slave].orientation, node.orientation);
     poses_[slave].orientation = node.orientation;
   }

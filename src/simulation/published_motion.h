@@ -14,7 +14,7 @@
 
 namespace flexarm {
 
-/// What functions of a state for output look at.
+/// The arguments of functions that compute output from a state.
 struct MotionView {
   const Model& model;
   const DegreesOfFreedom& dof;
@@ -24,7 +24,8 @@ struct MotionView {
 
 // ---------------------------------------------------------------- velocities
 
-/// Lengths of the last steps, newest first: what turns mean rates of these steps into the rate at the end.
+/// Lengths of the last steps, newest first. Converts mean rates in these steps to the rate at the end of the newest
+/// one.
 struct LastSteps {
   static constexpr int kMost = 4;
   int count = 2;                       ///< at least two
@@ -33,25 +34,25 @@ struct LastSteps {
   /// Mean rates of a quantity of Size 1 or 3 in these steps: increments over lengths, newest first.
   template <int Size>
   using MeanRates = std::array<Eigen::Matrix<double, Size, 1>, kMost>;
-  /// The rate at the end of the newest step: of third order where the motion is smooth over four steps, else the mean
-  /// of the newest step, which is of second order where the rate has an extremum. Invariant under rotations. Right
-  /// behind the start, where fewer steps are known, three are asked or two.
+  /// The rate at the end of the newest step. It is of third order if the motion is smooth over four steps. Otherwise it
+  /// is the mean rate of the newest step, which is of second order where the rate has an extremum. Invariant under
+  /// rotations. Soon after the start, when fewer steps are known, three or two steps are used.
   template <int Size>
   Eigen::Matrix<double, Size, 1> rate_at_end(const MeanRates<Size>& mean) const;
 };
 
-/// Velocities of a state. They follow from the increments that the state remembers for the predictor: nothing else is
-/// kept from step to step. At the start and after the first step they are the scheme's own. Allocates only for another
-/// model than before.
+/// Velocities of a state, for output. They are computed from the increments that the state stores for the predictor, so
+/// that nothing else has to be kept from step to step. At the start and after the first step they are the scheme's own
+/// velocities. Allocates memory only if the model changes.
 class OutputVelocities {
  public:
   void update_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
-  /// After update_rates() of the same state.
+  /// Call update_rates() for the same state first.
   void update_nodes(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
 
   /// Per node: {v, w}, world axes [m/s, rad/s].
   const std::vector<Vector6>& nodes() const { return nodes_; }
-  /// Of a released coordinate [rad/s or m/s].
+  /// Rate of a released coordinate [rad/s or m/s].
   double rate(const Coordinate& coordinate) const { return rates_[coordinate.joint][coordinate.component]; }
 
  private:
@@ -61,7 +62,7 @@ class OutputVelocities {
   void set_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
   void set_slaves(const Model& model, const State& state);
 
-  bool has_steps_ = false;  ///< that tell more than the scheme's own velocities
+  bool has_steps_ = false;  ///< enough steps are known; otherwise the scheme's own velocities are used
   LastSteps steps_;
   std::vector<NodePose> poses_;
   std::vector<Vector6> nodes_;
@@ -70,22 +71,23 @@ class OutputVelocities {
 
 // ---------------------------------------------------------------- accelerations of points
 
-// From where they were after the last steps.
+// They are computed from positions and orientations after the last steps.
 
-/// Mean rates of a vector over the last steps, newest first, and how long these were.
+/// Mean rates of a vector in the last steps, and the lengths of these steps, newest first.
 struct MeanRates {
   static constexpr int kMost = 4;
   int count = 0;
   std::array<Vector3, kMost> rate;
   std::array<double, kMost> length;  ///< [s]; parts of a composed step may be negative
 
-  /// The rate's own rate at the end of the newest step: of second order where the motion is smooth over four steps, and
-  /// without what alternates from step to step. Zero where fewer than two steps are known. Invariant under rotations.
+  /// The rate's derivative at the end of the newest step. It is of second order if the motion is smooth over four
+  /// steps, and contains nothing that alternates from step to step. Zero if fewer than two steps are known. Invariant
+  /// under rotations.
   Vector3 change_at_end() const;
 };
 
-/// The configurations after the last steps. They follow from the increments that the state remembers for the
-/// predictor: nothing else is kept. Allocates only for another model than before.
+/// The configurations at the beginnings of the last steps. They are computed from the increments that the state stores
+/// for the predictor: nothing else is kept. Allocates memory only if the model changes.
 class PastMotion {
  public:
   void update(const MotionView& view);
@@ -101,9 +103,9 @@ class PastMotion {
   std::array<State, MeanRates::kMost> configurations_;  // nodes only: at the beginnings of the steps, newest first
 };
 
-// ---------------------------------------------------------------- both
+// ---------------------------------------------------------------- velocities and past configurations
 
-/// Keeps what was asked for until the state changes.
+/// Computes velocities and past configurations when they are first requested, and keeps them until the state changes.
 class PublishedMotion {
  public:
   void forget() { holds_rates_ = holds_velocities_ = holds_past_ = false; }
@@ -111,7 +113,7 @@ class PublishedMotion {
   bool holds_velocities() const { return holds_velocities_; }
   bool holds_past() const { return holds_past_; }
 
-  /// Those of coordinates alone.
+  /// Only the rates of coordinates are valid in the result.
   const OutputVelocities& rates(const MotionView& view) {
     if (!holds_rates_) velocities_.update_rates(view.model, view.dof, view.rule, view.state);
     holds_rates_ = true;

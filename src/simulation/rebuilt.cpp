@@ -23,7 +23,7 @@ void go_on_with(Simulation& simulation, const State& state, const scene::SceneDe
                                 touched, [&](State& placed) { begin(next, placed); });
   const Energies before = simulation.energies();
   const Energies after = energies(model_of(next), scheme_of(next), carried);
-  // Where gravity's is measured from may be elsewhere, which is no loss.
+  // The two models may measure potential energy from different heights, so that a difference in it is no loss.
   if (change == EnergyChange::Dissipated) {
     carried.dissipated += before.kinetic + before.strain - after.kinetic - after.strain;
     carried.work += after.potential - before.potential;

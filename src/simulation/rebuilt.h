@@ -1,5 +1,5 @@
 #pragma once
-/// A simulation that goes on with a scene to which links were added, or from which some were taken.
+/// Replaces a simulation by one of an edited scene, in which the motion goes on: links were added or removed.
 
 #include <set>
 #include <string>
@@ -10,22 +10,26 @@
 
 namespace flexarm {
 
-/// Of another scene with the settings of `like`, at its start, which is not its equilibrium. @throws ModelError
+/// Makes a simulation of another scene with the settings of `like`. It is at its start, and does not search for an
+/// equilibrium.
+/// @throws ModelError if the scene cannot be built
 Simulation with_settings_of(const Simulation& like, scene::SceneDescription scene);
-/// Adds to a state of the simulation's model what its scheme keeps at the beginning of a motion.
-/// @throws std::invalid_argument where that cannot be found
+/// Adds to a state of the simulation's model what its scheme stores at the beginning of a motion, such as
+/// accelerations.
+/// @throws std::invalid_argument if these cannot be found
 void begin(Simulation& simulation, State& state);
 
-/// How a change counts in the account of energy.
+/// How the change of energy counts in the energy account.
 enum class EnergyChange {
-  Work,       ///< what comes or goes has its own
-  Dissipated  ///< nothing comes or goes: what is missing was lost
+  Work,       ///< links come or go, with their energy
+  Dissipated  ///< no link comes or goes: the missing energy was lost
 };
 
-/// Makes the simulation one of `scene` in which all that has kept its name goes on from `state`, one of the simulation.
-/// `touched`: links whose accelerations have jumped, as have those of the mechanisms to which they belong.
-/// @throws ModelError; std::invalid_argument where the mesh of a flexible link would be another one. The simulation is
-/// as before then.
+/// Replaces the simulation by one of `scene`. Whatever has kept its name goes on from `state`, which is a state of the
+/// old simulation. `touched`: links whose accelerations jump, together with those of the mechanisms to which they
+/// belong.
+/// @throws ModelError; std::invalid_argument if a flexible link would get another mesh. Then the simulation stays as it
+/// is.
 void go_on_with(Simulation& simulation, const State& state, const scene::SceneDescription& scene,
                 const std::set<std::string>& touched, EnergyChange change);
 

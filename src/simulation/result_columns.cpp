@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "flexarm/math/near_names.h"
 #include "flexarm/scene/scene_description.h"
-#include "math/near_names.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -64,6 +64,16 @@ void force_values(const Simulation& simulation, const StepCounts&, std::size_t i
 void touch_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
   put_out_touch(simulation, i, row);
 }
+/// The sections of a beam at its nodes, one after the other.
+void section_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  std::vector<BeamPoint> points;
+  simulation.beam_points(i, 0, points);
+  for (const BeamPoint& point : points) {
+    append(row, point.pose);
+    for (const Vector6& numbers : {point.strain, point.resultant})
+      row.insert(row.end(), numbers.data(), numbers.data() + numbers.size());
+  }
+}
 void energy_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
   const Energies e = simulation.energies();
   row.insert(row.end(), {e.kinetic, e.strain, e.potential, e.total(), e.work, e.dissipated});
@@ -86,16 +96,32 @@ void estimate_values(const Simulation&, const StepCounts& counts, std::size_t, R
   row.push_back(counts.error_estimate);
 }
 
+/// Names of the columns of a beam, "0/x" to "N/mz".
+std::vector<ResultColumn> section_names(const Simulation& simulation, std::size_t link) {
+  std::vector<ResultColumn> names;
+  for (std::size_t node = 0; node < simulation.undeformed_sections(link, 0).size(); ++node)
+    for (const auto& [name, unit] : section_columns()) names.push_back({fmt::format("{}/{}", node, name), unit});
+  return names;
+}
+
 }  // namespace
 
-/// Takes what is asked for.
+const std::vector<ResultColumn>& section_columns() {
+  static const std::vector<ResultColumn> columns = {
+      {"x", "m"},  {"y", "m"},  {"z", "m"},    {"qx", "1"},   {"qy", "1"},   {"qz", "1"},   {"qw", "1"},
+      {"ex", "1"}, {"ey", "1"}, {"ez", "1"},   {"kx", "1/m"}, {"ky", "1/m"}, {"kz", "1/m"}, {"fx", "N"},
+      {"fy", "N"}, {"fz", "N"}, {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}};
+  return columns;
+}
+
+/// Selects the columns whose names match the patterns.
 class ResultColumns::Selection {
  public:
   Selection(ResultColumns& result, const std::vector<std::string>& patterns)
       : result_(result), patterns_(patterns), is_fitted_(patterns.size(), false) {}
 
-  using Names = std::vector<scene::SensorChannel>;
-  /// `by_request`: only where a pattern fits.
+  using Names = std::vector<ResultColumn>;  ///< without the prefix
+  /// `by_request`: select these columns only if a pattern matches. Without patterns, all other columns are selected.
   void add(const std::string& prefix, const Names& names, Values values, std::size_t index = 0,
            bool by_request = false) {
     Group group{values, index, {}};
@@ -114,15 +140,11 @@ class ResultColumns::Selection {
     const auto odd = std::find(is_fitted_.begin(), is_fitted_.end(), false);
     if (odd == is_fitted_.end()) return;
     const std::string& pattern = patterns_[static_cast<std::size_t>(odd - is_fitted_.begin())];
-    constexpr std::size_t kMostNames = 12;
-    std::vector<std::string> names = nearest_first(pattern, names_);
-    const std::size_t left = names.size() - std::min(names.size(), kMostNames);
-    names.resize(names.size() - left);
-    throw std::invalid_argument(fmt::format("no column is like '{}'; there are {}{}", pattern, fmt::join(names, ", "),
-                                            left > 0 ? fmt::format(" and {} others", left) : ""));
+    throw std::invalid_argument(
+        fmt::format("no column is like '{}'; there are {}", pattern, nearest_listed(pattern, names_)));
   }
 
-  /// Puts columns in the order in which they were asked for.
+  /// Puts columns in the order of the patterns that select them.
   void put_in_order() {
     std::vector<std::size_t> order(found_.size()), places(found_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -144,7 +166,7 @@ class ResultColumns::Selection {
     int rank;
   };
 
-  /// The first pattern that asks for it.
+  /// Index of the first pattern that matches the name, or kFirst, or kUnwanted.
   int rank_of(const std::string& name, bool by_request) {
     int rank = name == "time" || (patterns_.empty() && !by_request) ? kFirst : kUnwanted;
     for (std::size_t i = 0; i < patterns_.size(); ++i) {
@@ -157,7 +179,7 @@ class ResultColumns::Selection {
 
   ResultColumns& result_;
   const std::vector<std::string>& patterns_;
-  std::vector<std::string> names_;  // of all columns there are
+  std::vector<std::string> names_;  // of all columns that exist
   std::vector<bool> is_fitted_;
   std::vector<Found> found_;
 };
@@ -177,15 +199,19 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
   }
   for (std::size_t i = 0; i < simulation.link_names().size(); ++i)
     selection.add("frame/" + simulation.link_names()[i] + "/", pose, frame_values, i);
+  for (std::size_t i = 0; i < simulation.link_names().size(); ++i)
+    selection.add("beam/" + simulation.link_names()[i] + "/", section_names(simulation, i), section_values, i, true);
   for (std::size_t i = 0; i < scene.probes.size(); ++i) {
     const std::string prefix = "probe/" + scene.probes[i].name + "/";
     selection.add(prefix, pose, probe_values, i);
     selection.add(prefix, {{"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}}, probe_velocity_values, i);
     selection.add(prefix, {{"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}}, acceleration_values, i, true);
   }
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
-    selection.add("sensor/" + scene.sensors[i].name + "/", scene::sensor_channels(scene.sensors[i].kind), sensor_values,
-                  i);
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    Names names;
+    for (const auto& [name, unit] : scene::sensor_channels(scene.sensors[i].kind)) names.push_back({name, unit});
+    selection.add("sensor/" + scene.sensors[i].name + "/", names, sensor_values, i);
+  }
   const ForceElementList& elements = model_of(simulation).force_elements;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (elements[i]->name().empty()) continue;

@@ -15,18 +15,19 @@
 namespace flexarm {
 namespace {
 
-/// Rotation of a node in a step [rad]. What turns freely lags by a twelfth of its square (2 %), where velocities follow
-/// tangent-scaled increments; second order in the step says little of what turns by more.
+/// Rotation of a node in a step above which there is a warning [rad]. With tangent-scaled increments, a free rotation
+/// lags by a twelfth of the squared angle (2 %). For larger rotations, second order in the step says little about the
+/// error.
 constexpr double kLargestRotation = 0.5;
-/// What materials of arms bear, and where a linear law of theirs holds, ends long before that.
+/// Strain above which there is a warning. Materials of arms fail, and their linear law ceases to hold, far below it.
 constexpr double kLargestStrain = 0.1;
 /// Largest defect of the energy account of a conserving scheme, relative to the largest energy. It is far above the
 /// error that the tolerance of Newton's method leaves.
 constexpr double kLargestEnergyDefect = 1e-3;
-/// Displacements in a step, beside the mechanism's length, that are as good as rest.
+/// Displacements in a step that count as rest, relative to the mechanism's length.
 constexpr double kRest = 1e-8;
 
-/// Of a mechanism that moves as little as that [J].
+/// Kinetic energy of a mechanism that moves as slowly as that [J].
 double energy_of_rest(const Simulation& simulation) {
   const Model& model = model_of(simulation);
   const double speed = kRest * model.length_scale / simulation.step_size();
@@ -70,17 +71,16 @@ std::string RunSummary::rotation_warning(const Simulation& simulation) const {
       place_name(model_of(simulation), place_of_node(model_of(simulation), state_of(simulation), rotation_.index));
   const double lag = 1 - angle / rotation_.amount;
   return fmt::format(
-      "{} turned by up to {:.2g} rad in a step, by t = {:.6g} s: what turns freely lags by {:.2g} % there; a smaller "
-      "step helps, that keeps it below {} rad",
+      "{} turned by up to {:.2g} rad in the step to t = {:.6g} s: free rotations are {:.2g} % too slow there; use a "
+      "smaller step, in which it turns by less than {} rad",
       place.empty() ? "a node" : place, angle, rotation_.time, 100 * lag, kLargestRotation);
 }
 
 std::string RunSummary::strain_warning(const Simulation& simulation) const {
   if (strain_.amount <= kLargestStrain) return "";
   return fmt::format(
-      "link '{}' was strained by up to {:.2g}, {:.4g} m from its beginning at t = {:.6g} s: the material's law, which "
-      "is linear, says little there; look at loads and stiffness, or refine its mesh if the strain is where it is "
-      "coarse",
+      "link '{}' was strained by up to {:.2g}, {:.4g} m from its beginning, at t = {:.6g} s: the linear material law "
+      "is not valid there; check loads and stiffness, or refine the mesh if it is coarse there",
       simulation.link_names()[strain_.index], strain_.amount, strain_.arc_length, strain_.time);
 }
 

@@ -27,7 +27,7 @@ void append(Things& things, const Things& others) {
   things.insert(things.end(), others.begin(), others.end());
 }
 
-/// @throws std::invalid_argument
+/// @throws std::invalid_argument if a name is in both lists
 template <class Things>
 void require_other_names(const Things& things, const Things& others, const char* what) {
   std::set<std::string> names;
@@ -99,7 +99,7 @@ void keep_border(SceneDescription& scene, const std::string& link, const Vector3
   const auto found = std::find_if(scene.links.begin(), scene.links.end(),
                                   [&](const LinkDescription& each) { return each.name == link; });
   if (found == scene.links.end() || !found->beam || found->beam->elements == 0) return;
-  PointLoad nothing;  // borders are where loads act
+  PointLoad nothing;  // elements have borders at places of loads
   nothing.link = link;
   nothing.at = place;
   nothing.history = TimeFunction::parse("0");
@@ -110,7 +110,10 @@ void keep_border(SceneDescription& scene, const std::string& link, const Vector3
 }
 
 void take_away(SceneDescription& scene, const std::string& link) {
-  const std::set<std::string> links = branch_of(scene, link);
+  std::set<std::string> links = branch_of(scene, link);
+  for (const JointDescription& pin : scene.loop_joints)  // a cylinder goes with either of its ends
+    if (pin.is_hidden && links.count(pin.child) > 0)
+      links.merge(branch_of(scene, joint_above(std::as_const(scene), pin.parent)->parent));
   const auto goes = [&](const std::string& name) { return links.count(name) > 0; };
   const auto is_gone = [&](const JointDescription& joint) { return goes(joint.child) || goes(joint.parent); };
   std::set<std::string> joints, coordinates;
@@ -149,7 +152,7 @@ void take_away(SceneDescription& scene, const std::string& link) {
   for (Sensor& sensor : scene.sensors) {
     const bool is_of_group = !sensor.group.empty();
     drop_if(sensor.group, goes);
-    if (is_of_group && sensor.group.empty()) sensor.link = link;  // it goes, too
+    if (is_of_group && sensor.group.empty()) sensor.link = link;  // so that the sensor is removed, too
   }
   drop_if(scene.sensors, [&](const Sensor& sensor) { return goes(sensor.link) || joints.count(sensor.joint) > 0; });
   drop_if(scene.force_elements, [&](const auto& element) {
@@ -165,7 +168,7 @@ void take_away(SceneDescription& scene, const std::string& link) {
 void rename(SceneDescription& scene, const std::string& prefix) {
   if (prefix.empty()) return;
   if (!scene.force_elements.empty())
-    throw std::invalid_argument("a model with springs between points of links cannot have a prefix");
+    throw std::invalid_argument("a model with springs or tendons between points of links cannot have a prefix");
   std::set<std::string> grounds;
   for (const GroundDescription& ground : scene.grounds) grounds.insert(ground.name);
   const auto put = [&](std::string& name) {
@@ -180,6 +183,10 @@ void rename(SceneDescription& scene, const std::string& prefix) {
   for (JointDescription& joint : scene.joints) put_joint(joint);
   for (JointDescription& joint : scene.loop_joints) put_joint(joint);
   for (ClearanceDescription& clearance : scene.clearances) put_joint(clearance.joint);
+  for (CylinderDescription& cylinder : scene.cylinders) {
+    cylinder.name = prefix + cylinder.name;
+    put(cylinder.from), put(cylinder.to);
+  }
   const auto put_coordinates = [&](auto& things) {
     for (auto& thing : things) thing.coordinate = prefix + thing.coordinate;
   };
@@ -219,6 +226,7 @@ void merge(SceneDescription& scene, const SceneDescription& other) {
   append(scene.links, links);
   append(scene.joints, other.joints);
   append(scene.loop_joints, other.loop_joints);
+  append(scene.cylinders, other.cylinders);
   append(scene.springs, other.springs);
   append(scene.drives, other.drives);
   append(scene.servos, other.servos);

@@ -1,5 +1,5 @@
 #pragma once
-/// Changes of a scene to which links are added, or from which they are taken.
+/// Edits of a scene, to add or remove links.
 
 #include <optional>
 #include <set>
@@ -9,36 +9,38 @@
 
 namespace flexarm::scene {
 
-/// The joint of the tree that carries a link; null: none does.
+/// The joint of the tree whose child is the link; null if there is none.
 JointDescription* joint_above(SceneDescription& scene, const std::string& link);
 const JointDescription* joint_above(const SceneDescription& scene, const std::string& link);
-/// The link, and all that it carries by joints of the tree.
+/// The link, and all links that it carries by joints of the tree.
 std::set<std::string> branch_of(const SceneDescription& scene, const std::string& link);
 
-/// The element that drives or holds a coordinate of the joint: "motion", "effort", "servo", "drive", "spring".
+/// The element that drives or holds a coordinate of the joint, if any: "motion", "effort", "servo", "drive", "spring".
 std::optional<std::string> what_drives(const SceneDescription& scene, const JointDescription& joint);
-/// Takes away where the joint starts, and how its child moves then.
+/// Removes the initial values of the joint, and the initial velocity of its child.
 void forget_start(SceneDescription& scene, const JointDescription& joint);
 
-/// How a link starts, in the world.
+/// Pose and velocity of a link at the start, in the world.
 struct LinkStart {
   Pose pose;
   Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();  ///< of its origin [m/s, rad/s]
 };
-/// Makes the joint, which stays in its place among the others, a floating one on the root link.
+/// Makes the joint a floating joint on the root link. It keeps its place in the list of joints.
 void let_float(SceneDescription& scene, JointDescription& joint, const LinkStart& start);
 
-/// Lets a flexible link have a border between elements at the same place (link frame) when nothing else is there.
+/// Keeps a border between elements of a flexible link at `place` (link frame), even if nothing else is there, by a zero
+/// load.
 void keep_border(SceneDescription& scene, const std::string& link, const Vector3& place);
 
-/// Takes away a link, all that it carries, and all that speaks of these.
-/// @throws std::invalid_argument where a joint that stays follows one that goes.
+/// Removes a link, all links that it carries, and everything that refers to these.
+/// @throws std::invalid_argument if a joint that stays is a mimic of a removed one.
 void take_away(SceneDescription& scene, const std::string& link);
 
-/// Puts `prefix` before the names of what a scene describes.
-/// @throws std::invalid_argument where it has force elements, whose names cannot be changed.
+/// Puts `prefix` before all names in a scene, except for those of the root link and of grounds.
+/// @throws std::invalid_argument if the scene has force elements, whose names cannot be changed.
 void rename(SceneDescription& scene, const std::string& prefix);
-/// Adds another scene, whose root link is this one's. @throws std::invalid_argument where both have the same name.
+/// Adds another scene. The two root links become one.
+/// @throws std::invalid_argument if both scenes use the same name for something else.
 void merge(SceneDescription& scene, const SceneDescription& other);
 
 }  // namespace flexarm::scene

@@ -13,14 +13,15 @@
 namespace flexarm {
 namespace {
 
-/// Looks at parts of a scene: their fingerprint, and their values by name. Structures are taken apart by name, so that
-/// a new member does not compile here before somebody has decided whether it counts.
+/// Reads parts of a scene, and collects their fingerprint and their values by name. Most structures are taken apart by
+/// structured bindings: if a structure gets a new member, this file does not compile until somebody decides whether
+/// that member counts.
 class SceneParts {
  public:
-  /// `path`: of what follows, "link 'arm'".
+  /// `path`: name of the part that follows, such as "link 'arm'".
   SceneParts(std::string path, std::vector<SceneValue>& values) : path_(std::move(path)), values_(values) {}
 
-  /// Names and parts by turns.
+  /// Takes names and parts alternately.
   template <class Part, class... Others>
   void all(const char* name, const Part& part, const Others&... others) {
     const std::size_t length = path_.size();
@@ -36,12 +37,12 @@ class SceneParts {
   std::string fingerprint() const { return bytes_.text(); }
 
  private:
-  // ---- what counts, and what is told
+  // ---- the fingerprint and the list of values
   void count(double value) {
     value += 0.0;  // -0 and 0 are the same
     bytes_.add({reinterpret_cast<const char*>(&value), sizeof value});
   }
-  /// In one line, whatever the file has.
+  /// Adds a value to the list, in one line, even if the text has several.
   void tell(std::string value) {
     std::string name = path_;
     for (std::string* text : {&name, &value})
@@ -49,7 +50,7 @@ class SceneParts {
           text->begin(), text->end(), [](unsigned char c) { return c < 0x20; }, ' ');
     values_.push_back({std::move(name), std::move(value)});
   }
-  /// What tells a member of a list from others.
+  /// What distinguishes a member of a list from the others: its coordinate, its name, or its number.
   template <class Value>
   static auto label(const Value& value, std::size_t, int) -> decltype(value.coordinate, std::string()) {
     return "'" + value.coordinate + "'";
@@ -146,7 +147,8 @@ class SceneParts {
     const auto& [name, inertial, beam, visuals, collisions, location] = link;
     all("name", name, "inertial", inertial, "beam", beam);
   }
-  /// What was not there before counts where it is given: other scenes keep their fingerprints.
+  /// Adds an option only if the scene gives it, so that scenes without the option keep the fingerprints of older
+  /// versions.
   void add_given(const char* name, const std::optional<double>& value) {
     if (value) all(name, *value);
   }
@@ -167,12 +169,18 @@ class SceneParts {
   }
   void add(const scene::JointDescription& joint) {
     const auto& [name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, profile, slide, limits,
-                 effort_limit, damping, friction, friction_law, mimic, child_origin, location] = joint;
+                 effort_limit, damping, friction, friction_law, mimic, child_origin, location, is_hidden] = joint;
     all("name", name, "kind", kind, "parent", parent, "child", child, "origin", origin, "axis", axis, "axis2", axis2,
         "ratio", ratio, "offset", offset, "direction", direction, "slide", slide, "limits", limits, "effort_limit",
         effort_limit, "damping", damping, "friction", friction, "friction_law", friction_law, "mimic", mimic,
         "child_origin", child_origin);
     if (profile) all("profile", profile->numbers());
+  }
+
+  /// Its parts are links and joints of the scene; this is what their places follow from.
+  void add(const scene::CylinderDescription& cylinder) {
+    all("name", cylinder.name, "from", cylinder.from, "from_at", cylinder.from_at, "to", cylinder.to, "to_at",
+        cylinder.to_at);
   }
 
   void add(const scene::SpringDescription& spring) {
@@ -225,6 +233,7 @@ class SceneParts {
     for (const scene::LinkPoint& point : points) all("link", point.link);
     for (const scene::LinkPoint& point : points) all("at", point.at);
     for (const double number : element->numbers()) all("number", number);
+    for (const TimeFunction& function : element->functions()) all("function", function);
   }
   void add(const scene::GroundDescription& ground) {
     all("name", ground.name, "normal", ground.normal, "offset", ground.offset);
@@ -253,7 +262,7 @@ class SceneParts {
   Fingerprint bytes_;
 };
 
-/// Lines for what must agree, and beside them the values that they stand for.
+/// The lines that must agree, and the values from which they are made.
 class Identity {
  public:
   template <class... NamesAndParts>
@@ -262,7 +271,7 @@ class Identity {
     seen.all(parts...);
     out_.text += kind + " " + seen.fingerprint() + "\n";
   }
-  /// Of one part, whose own names are enough.
+  /// A line for one part. The values of its members need no further name.
   template <class Part>
   void part(const std::string& kind, const Part& part) {
     SceneParts seen(kind, out_.values);
@@ -293,14 +302,14 @@ class Identity {
     tell("weak_form", static_cast<int>(scheme.weak_form));
   }
 
-  /// One for each kind that there is.
+  /// One line for each kind of force element that the scene has.
   void force_elements(const scene::ForceElementDescriptions& elements) {
     std::map<std::string, scene::ForceElementDescriptions> kinds;
     for (const auto& element : elements) kinds[element->kind()].push_back(element);
     for (const auto& [kind, list] : kinds) part(kind + "s", list);
   }
 
-  /// One where something may touch.
+  /// One line if the scene has contacts.
   void contacts(const scene::SceneDescription& scene) {
     if (scene.contacts.empty()) return;
     std::vector<std::vector<scene::VisualDescription>> shapes;
@@ -312,7 +321,8 @@ class Identity {
          shapes, "surfaces of", names, "surfaces", surfaces);
   }
 
-  /// They count by the numbers that are made of them, and tell best why these differ.
+  /// Parameters have no lines in the text, since the numbers that are computed from them count. But they explain best
+  /// why these differ.
   void parameters(const std::vector<scene::ParameterDescription>& parameters) {
     for (const scene::ParameterDescription& parameter : parameters)
       out_.values.push_back({"parameter '" + parameter.name + "'", fmt::format("{}", parameter.value)});
@@ -328,7 +338,7 @@ class Identity {
 }  // namespace
 
 SceneIdentity identity_of(const scene::SceneDescription& scene, const Scheme& scheme) {
-  const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
+  const auto& [name, file, root, links, joints, loop_joints, cylinders, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
                sensors, force_elements, grounds, contacts, no_contacts, surfaces, clearances, lock_massless,
                starts_in_equilibrium, equilibrium_location, parameters] = scene;
@@ -338,6 +348,7 @@ SceneIdentity identity_of(const scene::SceneDescription& scene, const Scheme& sc
   identity.each("link", links);
   identity.each("joint", joints);
   identity.each("loop_joint", loop_joints);
+  if (!cylinders.empty()) identity.part("cylinder", cylinders);
   identity.part("spring", springs);
   identity.part("drive", drives);
   identity.part("servo", servos);

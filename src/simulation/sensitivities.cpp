@@ -22,7 +22,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Stands where it starts: what is commanded does not count.
+/// Whether the simulation is at its start. Commands do not count.
 bool is_at_start(const Simulation& simulation) {
   State own = state_of(simulation), start = initial_state_of(simulation);
   if (own.steps != 0 || own.history.count != 0) return false;
@@ -49,7 +49,7 @@ class Sensitivities::Implementation {
   Implementation(Simulation& own, SensitivityRequest wanted)
       : simulation(own), request(std::move(wanted)), steps(model_of(own), scheme_of(own)) {
     if (!is_at_start(own))
-      throw std::invalid_argument("derivatives are those of a whole run: the simulation has moved, reset() it first");
+      throw std::invalid_argument("derivatives need the whole run: the simulation has moved; call reset() first");
     for (const std::string& name : request.parameters) {
       parameters.push_back(std::make_unique<ParameterDirection>(simulation, request, name));
       names.push_back(name);
@@ -65,7 +65,7 @@ class Sensitivities::Implementation {
 
   StepResult step() {
     if (simulation.time() != time || state_of(simulation).steps != count)
-      throw std::logic_error("somebody else has moved the simulation since the last step of its sensitivities");
+      throw std::logic_error("the simulation was moved by other means since the last step of its sensitivities");
     const std::vector<int> lines = state_of(simulation).left_lines;
     accompany(simulation, &steps);
     StepResult result = simulation.step();
@@ -87,12 +87,13 @@ class Sensitivities::Implementation {
     return result;
   }
 
-  /// A simulation of the model of a neighbour.
+  /// The simulation with the neighbour's model, in which its states are shown.
   Simulation& look_at(std::size_t direction, std::size_t neighbour) const {
     return direction < parameters.size() ? parameters[direction]->look(neighbour) : *look;
   }
 
-  /// What sensors measure is taken by the run after each of its steps, with errors that depend on their number.
+  /// Lets neighbours take samples after the same steps as the run, and with the same step numbers, which determine the
+  /// samples' errors.
   void take_samples(bool all) {
     if (simulation.scene().sensors.empty()) return;
     const State& state = state_of(simulation);
@@ -108,7 +109,7 @@ class Sensitivities::Implementation {
     }
   }
 
-  /// The difference quotient, in each direction, of what `observe` makes of neighbours less what it makes of the run.
+  /// The difference quotient in each direction. `observe` returns a neighbour's value minus the run's.
   template <class Observe>
   MatrixXd derivative(Eigen::Index size, const Observe& observe) const {
     const Eigen::Index count = static_cast<Eigen::Index>(steps.directions().size());
@@ -129,10 +130,10 @@ class Sensitivities::Implementation {
   SensitivityRequest request;
   NeighbourSteps steps;
   std::vector<std::unique_ptr<ParameterDirection>> parameters;
-  std::unique_ptr<Simulation> look;  // at neighbours of its own model
+  std::unique_ptr<Simulation> look;  // shows states of neighbours that have the run's own model
   std::vector<std::string> names;
   double time = simulation.time();
-  long count = 0;  // of steps done
+  long count = 0;  // number of steps done
 };
 
 Sensitivities::Sensitivities(Simulation& simulation, const SensitivityRequest& request)

@@ -17,12 +17,13 @@
 namespace flexarm {
 namespace {
 
-/// Largest difference of a parameter, over its size: what a single step makes of it is smooth.
+/// Largest difference of a parameter, relative to its value. Within it, the result of a single step is a smooth
+/// function of the parameter.
 constexpr double kLargestDifference = 3e-4;
-/// Neighbours further off than so many times the best distance come closer, for which models are built anew.
+/// Neighbours whose distance exceeds the best one by this factor are placed closer, which requires new models.
 constexpr double kTooFar = 3;
-/// Differences at the start, by the formula of fourth order. They are larger: accelerations there are differences
-/// over 1e-2 of a step, with more round-off.
+/// Relative difference for derivatives at the start, with the formula of fourth order. It is larger, since initial
+/// accelerations are differences over 1e-2 of a step, with more round-off.
 constexpr double kStartDifference = 1e-2;
 const std::vector<std::pair<double, double>> kFourthOrder = {{1, 2. / 3}, {-1, -2. / 3}, {2, -1. / 12}, {-2, 1. / 12}};
 const std::vector<std::pair<double, double>> kCentral = {{1, 0.5}, {-1, -0.5}}, kAbove = {{1, 2}, {2, -0.5}},
@@ -33,14 +34,14 @@ bool is_the_same(const IntegratorDescription& a, const IntegratorDescription& b)
          a.rho_infinity == b.rho_infinity;
 }
 
-/// To be compared: 0 where there are none.
+/// All numbers of a state for comparisons, with 0 in the place of NaN.
 std::vector<double> numbers_of(const State& state) {
   std::vector<double> numbers;
   for_each_number(state, [&](const char*, double number) { numbers.push_back(std::isnan(number) ? 0 : number); });
   return numbers;
 }
 
-/// Of the same unknowns, so that one's factors solve for the other.
+/// Whether two simulations have the same unknowns, so that factors of one can solve for the other.
 bool is_alike(const Simulation& a, const Simulation& b) {
   const Model &model = model_of(a), &other = model_of(b);
   if (model.nodes.size() != other.nodes.size() || a.coordinate_names() != b.coordinate_names()) return false;
@@ -72,12 +73,12 @@ ParameterDirection::ParameterDirection(const Simulation& simulation, const Sensi
         names.empty() ? fmt::format("unknown parameter '{}': the scene has no <parameter>", name)
                       : fmt::format("unknown parameter '{}': expected one of {}", name, fmt::join(names, ", ")));
   }
-  if (!request.read) throw std::invalid_argument("parameters need a scene that can be read once more");
+  if (!request.read) throw std::invalid_argument("parameters need a scene that can be read again");
   value_ = known->value;
   if (value_ != 0) scale_ = std::abs(value_);
   if (const scene::ReadResult again = request_.read(name_, value_); again.scene) integrator_ = again.scene->integrator;
   if (numbers_of(initial_state_of(built(value_))) != numbers_of(initial_state_of(simulation)))
-    throw std::invalid_argument("the scene that is read once more is another one than that of the simulation");
+    throw std::invalid_argument("the scene that was read again differs from that of the simulation");
   choose_side();
 }
 
@@ -105,13 +106,12 @@ Simulation ParameterDirection::built(double value) const {
   Attempt made = attempt(value);
   if (made.simulation) return std::move(*made.simulation);
   while (!made.fault.empty() && made.fault.back() == '\n') made.fault.pop_back();
-  throw std::invalid_argument(
-      fmt::format("the run cannot be differentiated by parameter '{}': with {:.17g} in the place "
-                  "of {:.17g}: {}",
-                  name_, value, value_, made.fault));
+  throw std::invalid_argument(fmt::format(
+      "the run cannot be differentiated with respect to parameter '{}': with {:.17g} instead of {:.17g}: {}", name_,
+      value, value_, made.fault));
 }
 
-/// Differences are central but at the end of what the parameter may be.
+/// Chooses central differences, or one-sided ones at an end of the parameter's range.
 void ParameterDirection::choose_side() {
   const double way = kLargestDifference * scale_;
   const bool above = attempt(value_ + way).simulation.has_value();
@@ -120,7 +120,7 @@ void ParameterDirection::choose_side() {
   else if (above)
     rule_ = kAbove;
   else
-    built(value_ + way);  // says why not
+    built(value_ + way);  // throws, and says why not
 }
 
 void ParameterDirection::set_neighbours(Direction& direction) {
@@ -183,7 +183,7 @@ std::vector<Direction> initial_state_directions(const Simulation& simulation, Ne
     names.push_back(k < count ? *name : "d/dt " + *name);
     Direction direction;
     direction.has_free_difference = true;
-    // No strain is large because a rate is.
+    // Rates may differ by more, since a large rate does not strain beams.
     direction.difference = k < count ? kLargestDifference : kStartDifference;
     for (const auto& [offset, weight] : kFourthOrder) {
       const MechanismMotion motion = states.moved(k, offset * direction.difference);

@@ -1,5 +1,5 @@
 #pragma once
-/// Neighbours of a simulation: with other values of a parameter, or with another start.
+/// Neighbours of a simulation: the same mechanism with another value of a parameter, or with another start.
 
 #include <memory>
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace flexarm {
 
-/// A parameter, and the neighbours that have other values of it.
+/// A parameter by which a run is differentiated, and the neighbours that have other values of it.
 class ParameterDirection {
  public:
   /// The simulation and the request must outlive this.
   /// @throws std::invalid_argument as Sensitivities does.
   ParameterDirection(const Simulation& simulation, const SensitivityRequest& request, const std::string& name);
 
-  /// Neighbours at the start, with its derivative by the parameter.
+  /// Makes the neighbours at the start, and the derivative of the start by the parameter.
   Direction start(NeighbourSteps& steps);
-  /// Puts neighbours that have gone too far off the run, in `state`, closer to it.
+  /// Places neighbours that are too far from the run, which is in `state`, closer to it.
   void come_closer(NeighbourSteps& steps, Direction& direction, const State& state);
-  /// Of the neighbours in their order, to be looked at.
+  /// The simulation with the model of a neighbour, to read results from.
   Simulation& look(std::size_t neighbour) { return looks_[neighbour]; }
 
  private:
@@ -36,12 +36,13 @@ class ParameterDirection {
   const SensitivityRequest& request_;
   std::string name_;
   double value_ = 0, scale_ = 1;                 // of the parameter
-  IntegratorDescription integrator_;             // as it is read
+  IntegratorDescription integrator_;             // as read from the scene
   std::vector<std::pair<double, double>> rule_;  // offsets and weights of the neighbours
   std::vector<Simulation> looks_;
 };
 
-/// For the state at the start of the simulation: neighbours whose start differs by one state of linear models each.
+/// Directions for derivatives by the initial state, one for each state of the linear model at the start. Appends the
+/// states' names to `names`.
 std::vector<Direction> initial_state_directions(const Simulation& simulation, NeighbourSteps& steps,
                                                 std::vector<std::string>& names);
 

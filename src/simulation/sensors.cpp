@@ -15,15 +15,15 @@ using scene::SensorKind;
 
 constexpr std::size_t kMostErrors = 6;
 using Errors = Eigen::Matrix<double, kMostErrors, 1>;
-/// Of a sample's interval: what is so little early is on time.
+/// Relative to a sample's interval: a sample may be early by this much and still be on time.
 constexpr double kRoundOff = 1e-6;
 
-/// Which sample is the last one at `time`, counted from t = 0; without a rate each step has its own.
+/// Number of the last sample at `time`, counted from t = 0. A sensor without a rate takes a sample after each step.
 long sample_at(const Sensor& sensor, double time, long steps) {
   return sensor.rate > 0 ? static_cast<long>(std::floor(time * sensor.rate + kRoundOff)) : steps;
 }
 
-/// FNV-1a.
+/// FNV-1a hash.
 std::uint64_t hashed(const std::string& name) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -61,7 +61,7 @@ Vector6 measured_wrench(const Sensor& sensor, const SensorPlace& place, const Mo
   return out;
 }
 
-/// Of all contacts.
+/// The sum of the wrenches of all contacts.
 Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view,
                         PublishedMotion& motion) {
   const Pose link = link_pose(place, view);
@@ -90,7 +90,7 @@ Vector6 measured_motion(const SensorPlace& place, const MotionView& view, Publis
   return out;
 }
 
-/// A pose whose errors are in its own axes; in the world.
+/// Sets a sample to a pose in the world, with errors in the axes of the pose.
 void set_pose(const Pose& pose, const Errors& errors, SensorSample& sample) {
   const Vector3 position = pose.position + pose.orientation * errors.head<3>();
   const Quaternion orientation = (pose.orientation * so3::exp_quaternion(Vector3(errors.tail<3>()))).normalized();

@@ -10,8 +10,8 @@ namespace flexarm {
 /// origin, world axes.
 Wrench transmitted_wrench(const State& state, int reaction);
 
-/// Takes the samples that are due by the state's time, or all. Nothing depends on when it is called but for that: the
-/// errors of a sample are those of its number, counted from t = 0. Allocates nothing after its first call.
+/// Takes the samples that are due at the state's time, or all samples. The time of the call does not matter otherwise:
+/// errors of a sample follow from its number, counted from t = 0. Allocates nothing after its first call.
 void take_samples(const std::vector<scene::Sensor>& sensors, const MotionView& view, PublishedMotion& motion, bool all,
                   std::vector<SensorSample>& samples);
 

@@ -22,7 +22,7 @@ double other_efforts(const Model& model, const Servo& servo, const Coordinate& c
   return applied_effort(coordinate, command, value(coordinate.effort)) + value(servo.feedforward);
 }
 
-/// What a servo measures [rad or m; over s], and the rate against which its derivative acts.
+/// What a servo measures [rad or m, and per second], and the rate on which its derivative term acts.
 struct Measured {
   double position = 0, velocity = 0, rate = 0;
 };
@@ -43,7 +43,8 @@ Measured measured(const Servo& servo, const Actuator& actuator, const ActuatorSt
   return out;
 }
 
-/// What the servo gives at the end of the step [N m or N]; of a sampled one the newest output, even if it is delayed.
+/// Effort that the servo gives at the end of the step [N m or N]. For a sampled servo it is the newest output, even if
+/// that is still delayed.
 double given_effort(const Model& model, const Servo& servo, const Coordinate& coordinate, std::size_t index,
                     double step, const State& state) {
   const ServoState& own = state.actuators[coordinate.actuator].servo;
@@ -54,7 +55,7 @@ double given_effort(const Model& model, const Servo& servo, const Coordinate& co
   return given + own.outputs.front() - held_output(servo, own, state.time - step, step);
 }
 
-/// Lets the law begin with this effort: by its integral, or by its set point where nothing integrates.
+/// Makes the law begin with this effort: by its integral, or, if it has none, by its set point.
 void take_over(const ServoLaw& law, double given, const Measured& now, double time, ServoState& state) {
   const bool is_velocity = law.mode == ServoMode::Velocity;
   const double set_rate = is_velocity ? now.velocity : 0;
@@ -137,9 +138,9 @@ void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, dou
   const bool is_on = own.off == 0;
   const double given = given_effort(model, servo, place, coordinate, step, state);
   Measured now = measured(servo, model.actuators[place.actuator], actuator, state, position, velocity);
-  if (!is_on) now.rate = mode == ServoMode::Velocity ? now.velocity : 0;  // there is nothing to go on from
+  if (!is_on) now.rate = mode == ServoMode::Velocity ? now.velocity : 0;  // there is no effort to continue
   own.law = static_cast<double>(law - servo.laws.begin());
-  // The error's increments, as if the new law had been in force before.
+  // Set the error's increments as if the new law had been in force before.
   own.average = mode == ServoMode::Position && is_on ? -step * now.velocity : 0;
   if (mode == ServoMode::Effort) {
     own.integral = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Commands to servos.
+/// Commands to servos: set points and modes.
 
 #include <cstddef>
 
@@ -9,16 +9,16 @@
 namespace flexarm {
 
 bool has_servo(const Model& model, std::size_t coordinate);
-/// @throws std::invalid_argument if the coordinate has none.
+/// @throws std::invalid_argument if the coordinate has no servo.
 const Servo& servo_of(const Model& model, std::size_t coordinate);
 ServoState& servo_of(const Model& model, std::size_t coordinate, State& state);
 
-/// @throws std::invalid_argument if steps of that length [s] miss the samples of a servo.
+/// @throws std::invalid_argument if a step of this length [s] does not divide the sample time of a servo.
 void require_hit_samples(const Model& model, double step);
 
 /// As Simulation::command_set_point(). `arrival`: end of the next step [s].
 void command_set_point(ServoState& servo, double set_point, double rate, double acceleration, double arrival);
-/// In force at a time, where the one that is commanded has arrived.
+/// The set point in force at `time`. A commanded one counts as if it had arrived.
 double set_point(const Servo& servo, const Model& model, const ServoState& state, double time);
 /// As Simulation::release_set_point().
 void release_set_point(const Model& model, std::size_t coordinate, State& state);

@@ -1,5 +1,5 @@
 #pragma once
-/// The settings that follow from <integrator> and the options of a simulation.
+/// Makes the settings of a simulation from <integrator> and from its options.
 
 #include <string>
 
@@ -11,10 +11,10 @@
 
 namespace flexarm {
 
-/// "file:line: ", of <integrator>, or of the file where it has none.
+/// The prefix "file:line: " with the place of <integrator>, or with the file alone if the scene has no such element.
 std::string integrator_place(const scene::SceneDescription& scene);
 
-/// What `make` returns; what it finds wrong with <integrator> says where that is.
+/// Returns the result of `make`. If that throws a ModelError, the error gets the place of <integrator>.
 template <class Make>
 auto made_for_integrator(const scene::SceneDescription& scene, const Make& make) {
   try {
@@ -24,14 +24,14 @@ auto made_for_integrator(const scene::SceneDescription& scene, const Make& make)
   }
 }
 
-/// @throws ModelError naming the first setting that is out of range.
+/// @throws ModelError that names the first setting that is out of range.
 StepSettings settings_of(const scene::SceneDescription& scene, const SimulationOptions& options);
 
 /// The scene with the scheme and the step in use.
 /// @throws ModelError as settings_of().
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options);
 
-/// @throws ModelError naming the first slide that does not go with the scheme.
+/// @throws ModelError that names the first slide that does not suit the scheme.
 void require_suitable_slides(const scene::SceneDescription& scene, const Scheme& scheme);
 
 }  // namespace flexarm

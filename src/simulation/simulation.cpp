@@ -24,8 +24,8 @@
 namespace flexarm {
 namespace {
 
-/// Says of a coordinate without a servo why the scene cannot give it one; what is left is said where a servo is looked
-/// up.
+/// If the coordinate has no servo because it is prescribed or follows another one, throws std::invalid_argument that
+/// says so. Where only a servo is missing, the functions that look up servos throw an error.
 void require_own_servo(const Simulation& simulation, std::size_t index) {
   if (!simulation.has_servo(index) && !simulation.is_commandable(index))
     throw std::invalid_argument(refusal_of_commands(simulation, index));
@@ -344,14 +344,15 @@ Wrench Simulation::reaction(std::size_t link) const {
     return place.joint >= 0 && model.joints[place.joint].slave == place.link.node;
   });
   if (place == model.sensors.end())
-    throw std::invalid_argument("no sensor of the scene asks what carries link '" + name + "'");
+    throw std::invalid_argument("the scene has no sensor of kind reaction or wrench for link '" + name + "'");
   return transmitted_wrench(implementation_->state, place->reaction);
 }
 ActingWrench Simulation::sensed_wrench(std::size_t sensor) const {
   const Implementation& s = *implementation_;
   const SensorPlace& place = entry(s.model.sensors, sensor, "sensor");
   if (place.reaction < 0)
-    throw std::invalid_argument("sensor '" + s.scene.sensors[sensor].name + "' does not measure what a joint does");
+    throw std::invalid_argument("sensor '" + s.scene.sensors[sensor].name +
+                                "' does not measure a joint's force and moment");
   const Pose link = s.in_world(s.model.links[place.point.link].frame);
   const Wrench about_link = transmitted_wrench(s.state, place.reaction);
   const Vector3 arm = link.orientation * s.scene.sensors[sensor].at;
@@ -383,6 +384,18 @@ void Simulation::contacts(std::vector<ActingContact>& contacts) const {
           {pair.first, pair.second, origin + point.position, point.normal, point.push + point.friction, -point.gap});
     });
 }
+void Simulation::line_points(std::size_t element, std::vector<Vector3>& points) const {
+  const Implementation& s = *implementation_;
+  points.clear();
+  const std::vector<Vector6> no_velocities;
+  const double* memory = s.state.force_memory.data() + memory_begin(s.model.force_elements, element);
+  s.model.force_elements.at(element)->put_line({s.state, no_velocities, memory}, points);
+  const Vector3 origin = world_origin(s.model, s.state);
+  for (Vector3& point : points) point += origin;
+}
+std::size_t Simulation::most_line_points(std::size_t element) const {
+  return implementation_->model.force_elements.at(element)->most_line_points();
+}
 const SensorSample& Simulation::sample(std::size_t sensor) const {
   return entry(implementation_->state.samples, sensor, "sensor");
 }
@@ -400,8 +413,10 @@ StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
   if (count < 1) throw std::invalid_argument("the number of modes must be >= 1");
-  return flexarm::natural_modes(implementation_->model, implementation_->state, count,
-                                implementation_->scheme.contact_time);
+  std::vector<Mode> modes = flexarm::natural_modes(implementation_->model, implementation_->state, count,
+                                                   implementation_->scheme.contact_time);
+  for (Mode& mode : modes) mode.coordinate_motion.resize(coordinate_names().size());  // without hidden ones
+  return modes;
 }
 
 std::size_t Simulation::node_count() const {

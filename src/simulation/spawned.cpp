@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kWorldLink = "world";
 
-/// A reader's floating root: the world and one joint. The model's own root link is its root again then.
+/// Removes the floating root that a reader has added, which is the world and one joint. Then the model's own root link
+/// is the root again.
 void take_floating_root(scene::SceneDescription& model) {
   scene::JointDescription* only = nullptr;
   for (scene::JointDescription& joint : model.joints)
@@ -25,7 +26,9 @@ void take_floating_root(scene::SceneDescription& model) {
   if (!only || only->kind != scene::JointKind::Floating || scene::what_drives(model, *only)) return;
   const std::string world = model.root_link, root = only->child;
   for (const scene::InitialJoint& initial : model.initial_joints)
-    if (initial.coordinate.compare(0, only->name.size() + 1, only->name + "/") == 0) return;  // it has its own place
+    if (initial.coordinate.compare(0, only->name.size() + 1, only->name + "/") == 0)
+      return;  // the model gives its own
+               // initial pose
   forget_start(model, *only);
   model.joints.erase(model.joints.begin() + (only - model.joints.data()));
   for (std::size_t i = 0; i < model.links.size(); ++i)
@@ -36,13 +39,29 @@ void take_floating_root(scene::SceneDescription& model) {
   model.root_link = root;
 }
 
-/// Joints on the world stand where the model does.
+/// Moves the joints on the world, and the points of cylinders there, by the pose at which the model is placed.
 void place_on_world(scene::SceneDescription& model, const Spawn& where) {
   if (!where.linear.isZero(0) || !where.angular.isZero(0))
     throw std::invalid_argument(
         "a velocity is for a model whose root link floats: the root link of this one is the world");
   for (scene::JointDescription& joint : model.joints)
     if (joint.parent == model.root_link) joint.origin = where.pose * joint.origin;
+  for (scene::JointDescription& loop : model.loop_joints) {
+    if (loop.parent == model.root_link) loop.origin = where.pose * loop.origin;
+    if (loop.child == model.root_link) loop.child_origin = where.pose * loop.child_origin;
+  }
+  for (scene::CylinderDescription& cylinder : model.cylinders) {
+    if (cylinder.from == model.root_link) cylinder.from_at = where.pose * cylinder.from_at;
+    if (cylinder.to == model.root_link) cylinder.to_at = where.pose * cylinder.to_at;
+  }
+}
+
+/// Calls `visit(name)` for each link's name in the model's joints and cylinders.
+template <class Visit>
+void for_each_end(scene::SceneDescription& model, const Visit& visit) {
+  for (auto* joints : {&model.joints, &model.loop_joints})
+    for (scene::JointDescription& joint : *joints) visit(joint.parent), visit(joint.child);
+  for (scene::CylinderDescription& cylinder : model.cylinders) visit(cylinder.from), visit(cylinder.to);
 }
 
 void add_floating_joint(scene::SceneDescription& model, const std::string& world, const Spawn& where) {
@@ -73,12 +92,13 @@ void spawn(Simulation& simulation, const scene::SceneDescription& model, const S
   if (added.root_link == kWorldLink || added.root_link == scene.root_link) {
     rename(added, where.prefix);
     place_on_world(added, placed);
-    for (scene::JointDescription& joint : added.joints)
-      if (joint.parent == added.root_link) joint.parent = scene.root_link;
+    for_each_end(added, [&](std::string& link) {
+      if (link == added.root_link) link = scene.root_link;
+    });
     for (scene::LinkDescription& link : added.links)
       if (link.name == added.root_link) link.name = scene.root_link;
   } else {
-    const std::string own = std::exchange(added.root_link, "");  // which gets a prefix, too
+    const std::string own = std::exchange(added.root_link, "");  // so that the root link gets a prefix, too
     rename(added, where.prefix);
     added.root_link = where.prefix + own;
     add_floating_joint(added, scene.root_link, placed);

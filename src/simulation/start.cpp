@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-/// Rates of functions of time come from differences [1/s, of a value of 1].
+/// Error of rates of functions of time, which are computed by differences [1/s, for a function of size 1].
 constexpr double kRateRoundOff = 1e-6;
 
 scene::Diagnostic warning(const scene::SourceLocation& place, const std::string& element, const std::string& text,
@@ -28,7 +28,7 @@ scene::SourceLocation place_of_integrator(const scene::SceneDescription& scene) 
   return scene.integrator_location.line > 0 ? scene.integrator_location : scene::SourceLocation{scene.file};
 }
 
-/// @throws ModelError naming the first initial velocity.
+/// @throws ModelError that names the first initial velocity.
 void require_rest(const scene::SceneDescription& scene) {
   const auto refuse = [](const scene::SourceLocation& place, const std::string& what) {
     throw ModelError(
@@ -49,12 +49,21 @@ void warn_of_blows(const scene::SceneDescription& scene, scene::Diagnostics& war
     if (std::abs(rate) > kRateRoundOff * (1 + std::abs(motion.position(0))))
       warnings.push_back(
           warning(motion.location, "<motion> of '" + motion.coordinate + "'",
-                  "moves at t = 0, which is a blow to a mechanism that starts at rest in its equilibrium",
+                  "moves at t = 0, which is an impact on a mechanism that starts at rest in its equilibrium",
                   fmt::format("'{:.3g}' rad/s or m/s", rate)));
   }
 }
 
 }  // namespace
+
+std::set<std::string> hidden_coordinates(const scene::SceneDescription& scene) {
+  std::set<std::string> hidden;
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints)
+      for (const std::string& suffix : scene::coordinate_suffixes(joint))
+        if (joint.is_hidden) hidden.insert(joint.name + suffix);
+  return hidden;
+}
 
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model) {
   std::set<std::string> driven;
@@ -92,12 +101,12 @@ scene::Diagnostics overlaps(const scene::SceneDescription& scene, const Model& m
     for (const auto& [index, begin] : pair.elements) {
       const ForceElement& element = *model.force_elements[index];
       const double* memory = state.force_memory.data() + begin;
-      if (element.remembers(memory))  // how deep it has started
+      if (element.remembers(memory))  // it remembers how deep the overlap was at the start
         gap = std::min(gap, element.touch({state, still, memory}, [](const TouchingPoint&) {}));
     }
     if (gap < 0)
       findings.push_back(warning({scene.file}, fmt::format("<contact> of '{}' and '{}'", pair.first, pair.second),
-                                 "they start inside of each other, and are let out little by little",
+                                 "they penetrate each other at the start, and are separated gradually",
                                  fmt::format("'{:.3g}' m", -gap)));
   }
   return findings;
@@ -106,8 +115,8 @@ scene::Diagnostics overlaps(const scene::SceneDescription& scene, const Model& m
 scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure) {
   return warning(
       place_of_integrator(scene), "start",
-      "begins with accelerations of zero, which is a wrong beginning for the scheme: those of the scene cannot "
-      "be found: " +
+      "has zero accelerations, which is inaccurate for the scheme, since the scene's accelerations cannot be "
+      "found: " +
           failure);
 }
 
@@ -124,7 +133,7 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
     const int coordinates = static_cast<int>(model.coordinates.size());
     const bool is_quick = are_modes_quick(DegreesOfFreedom(model).unknowns, coordinates);
     std::vector<Mode> modes;
-    // What has no equilibrium may have no modes either, where numbers are out of all bounds.
+    // A mechanism without an equilibrium may have no modes either, if its numbers are out of all bounds.
     try {
       if (is_quick) modes = natural_modes(model, state, 1 + coordinates, scheme.contact_time);
     } catch (const std::runtime_error&) {
@@ -138,8 +147,9 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
                                   "the simulation is to start in its equilibrium: " + lack};
     throw ModelError(error.text());
   }
-  for (const std::string& doubt : doubts_about_equilibrium(model, scheme.contact_time, state, result,
-                                                           "falls from it; the start is where it comes to rest"))
+  for (const std::string& doubt :
+       doubts_about_equilibrium(model, scheme.contact_time, state, result,
+                                "falls from it; the simulation starts in the equilibrium in which it comes to rest"))
     warnings.push_back(warning({scene.file}, "start in equilibrium", doubt));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-/// How a simulation starts.
+/// The start of a simulation: its equilibrium, and warnings about the start.
 
+#include <set>
 #include <string>
 
 #include "flexarm/scene/diagnostic.h"
@@ -12,20 +13,25 @@
 
 namespace flexarm {
 
+/// Names of the coordinates of hidden joints. A Model has these behind all others.
+std::set<std::string> hidden_coordinates(const scene::SceneDescription& scene);
+
 /// A warning for each joint coordinate that massless="lock" holds where it starts, in the scene's order.
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model);
 
-/// A warning where the scheme does not damp what its accelerations do across joints. (docs/notes/joints.md 3.2)
+/// A warning if the scheme does not damp the oscillation of its accelerations across joints. (docs/notes/joints.md 3.2)
 scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme);
 
-/// A warning for each pair that starts so deep inside of each other that it is let out slowly.
+/// A warning for each pair that overlaps so much at the start that the contact pushes it apart only slowly.
 scene::Diagnostics overlaps(const scene::SceneDescription& scene, const Model& model, const State& state);
 
-/// A warning that a motion begins with accelerations of zero, since its own cannot be found. `failure`: why, in words.
+/// A warning that the motion begins with accelerations of zero, since the right ones cannot be found. `failure`: the
+/// reason, in words.
 scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure);
 
-/// Brings `state` to the equilibrium of the scene, at rest; adds what is doubtful about it to `warnings`.
-/// @throws ModelError where there is none, naming joints that nothing holds, or where the scene gives a velocity.
+/// Brings `state` to the equilibrium of the scene, at rest. Adds doubts about the equilibrium to `warnings`.
+/// @throws ModelError if there is no equilibrium (it names joints that nothing holds), or if the scene gives a
+/// velocity.
 void start_in_equilibrium(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme,
                           const StepSettings& settings, State& state, scene::Diagnostics& warnings);
 

@@ -10,7 +10,8 @@
 namespace flexarm {
 namespace {
 
-/// Steps normalise quaternions to some units of round-off; this leaves room for states that somebody else made.
+/// Steps normalise quaternions to within some units of round-off. The tolerance leaves room for states from other
+/// sources.
 constexpr double kUnitTolerance = 1e-12;
 
 /// Keeps the first flaw found.
@@ -84,7 +85,7 @@ void check_servos(const Model& built, const State& state, Flaw& flaw) {
     flaw.require(servo.law == std::floor(servo.law) && servo.law >= 0 && servo.law <= last, "the mode of a servo",
                  servo.law, fmt::format("a whole number from 0 to {}", last));
     flaw.require(servo.law == 0 || !std::isnan(servo.set_point), "the set point of a servo", servo.set_point,
-                 "a number where its mode has been switched");
+                 "a number if its mode has been switched");
   }
 }
 

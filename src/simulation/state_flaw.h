@@ -8,9 +8,9 @@
 
 namespace flexarm {
 
-/// Why `state` is not one of a simulation: the quantity, its value, and what was expected. Empty if nothing is wrong.
-/// `built`: the model before anything has left its line; `initial`: a state of it with the same scheme;
-/// `finest_halving`: the highest halving_level.
+/// Says why `state` cannot be a state of a simulation: the quantity, its value, and what was expected. Empty if nothing
+/// is wrong. `built`: the model before any slider has left its line. `initial`: a state of that model with the same
+/// scheme. `finest_halving`: the highest halving_level.
 std::string state_flaw(const Model& built, const State& initial, int finest_halving, const State& state);
 
 }  // namespace flexarm

@@ -10,15 +10,16 @@
 namespace flexarm {
 namespace {
 
-/// Half the phase of a step, above which it is doubtful. Where a wave's acceleration is 0 at one end of the step, a
-/// half of that at the other is missing, however short it is.
+/// Largest part of the accelerations that may be missing in a step. In a motion that is resolved, about half the phase
+/// of the step is missing. But if an acceleration is 0 at one end of a step, half of that at the other end is missing,
+/// however short the step is.
 constexpr double kDoubtful = 0.75;
-/// Accelerations that matter to nobody [m/s^2, rad/s^2].
+/// Accelerations that are negligible [m/s^2, rad/s^2].
 constexpr double kStill = 1e-6;
-/// That are looked at.
+/// Number of steps that are checked.
 constexpr int kSteps = 2;
 
-/// Of the states that are positions.
+/// The mass matrix of the states that are positions.
 Eigen::MatrixXd mass_of_states(const LinearModel& model) {
   std::vector<Eigen::Index> places;
   for (int i = 0; i < model.positions; ++i) {
@@ -28,7 +29,7 @@ Eigen::MatrixXd mass_of_states(const LinearModel& model) {
   return picked(model.mass, places, places);
 }
 
-/// About `model` of `simulation`, by the step from there to `next` and the model `after` it.
+/// Doubt about `model`, which belongs to `simulation`: `next` is the simulation one step later, and `after` its model.
 std::string doubt_about_step(const Simulation& simulation, const LinearModel& model, const Simulation& next,
                              const LinearModel& after) {
   const Eigen::MatrixXd mass = mass_of_states(model);
@@ -40,9 +41,8 @@ std::string doubt_about_step(const Simulation& simulation, const LinearModel& mo
   const double most = std::max({size(made), size(asked), size(after.drift.tail(count))}), missing = size(made - asked);
   if (missing <= kDoubtful * most + kStill * std::sqrt(mass.trace())) return "";
   return fmt::format(
-      "at {:.6g} s forces ask for accelerations {:.2g} times those that the next step of {:.3g} s makes: it does not "
-      "resolve "
-      "what the beams do there, and the poles may be wrong; expected a shorter step of the <integrator>",
+      "at {:.6g} s the forces require accelerations {:.2g} times those in the next step of {:.3g} s: the step does not "
+      "resolve the motion of the beams, and the poles may be wrong; expected a shorter step of the <integrator>",
       simulation.time(), size(asked) / size(made), step);
 }
 
@@ -55,7 +55,7 @@ std::string doubt_about_instant(const Simulation& simulation, const LinearModel&
   request.outputs = model.outputs;
   Simulation here = simulation.copy();
   LinearModel of_here = model;
-  // What rings may pass one step unseen.
+  // Check several steps, since an oscillation may go unnoticed in one.
   for (int n = 0; n < kSteps; ++n) {
     Simulation next = here.copy();
     if (!next.step().converged) return "";

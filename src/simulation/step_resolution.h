@@ -7,10 +7,10 @@
 
 namespace flexarm {
 
-/// What makes the model of an instant doubtful, a sentence; empty: nothing. Takes two steps of a copy: of a motion that
-/// these resolve, velocities change by the accelerations that follow from the forces at its beginning, but for half the
-/// phase w h by which that motion goes on in the step. Stresses that ring in steps which do not resolve them let
-/// forces ask for accelerations that no step makes.
+/// Returns a sentence about why the linear model of an instant is doubtful; empty if it is not. Takes two steps with a
+/// copy of the simulation. If steps resolve a motion, its velocities change by the accelerations that follow from the
+/// forces at the beginning of the step, up to half the phase w h by which the motion advances in the step. If they do
+/// not, stresses may oscillate from step to step, and the forces result in accelerations that no step makes.
 std::string doubt_about_instant(const Simulation& simulation, const LinearModel& model);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// Contacts at an instant, for output.
+/// Contacts in a state, for output.
 
 #include <algorithm>
 #include <functional>
@@ -9,7 +9,8 @@
 
 namespace flexarm {
 
-/// Calls `take(point)` of each TouchingPoint of a pair. Returns the smallest gap between both [m]. Allocates nothing.
+/// Calls `take(point)` for each TouchingPoint of a pair. Returns the smallest gap between the two bodies [m]. Allocates
+/// nothing.
 template <class Take>
 double touch(const TouchingPair& pair, const MotionView& view, PublishedMotion& motion, Take&& take) {
   const TouchingPointTaker taker = std::ref(take);

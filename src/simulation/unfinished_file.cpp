@@ -22,12 +22,12 @@ namespace fs = std::filesystem;
   fail(std::strerror(errno));
 }
 
-/// The file that is to be replaced: where `path` is a link, what it points to.
+/// The file that will be replaced. If `path` is a symbolic link, it is the file that the link points to.
 std::string place_of(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return path;
-  if (!fs::is_regular_file(status)) fail("it is no regular file");  // which must not be replaced by one
+  if (!fs::is_regular_file(status)) fail("it is not a regular file");  // a file must not replace it
   const fs::path place = fs::canonical(path, error);
   if (error) fail(error.message());
   if (::access(place.c_str(), W_OK) != 0) fail_by_errno();
@@ -80,7 +80,8 @@ void UnfinishedFile::put_in_place() {
   if (!file.is_open() || !file.synchronise()) fail_by_errno();
   if (std::rename(temporary_.c_str(), place_.c_str()) != 0) fail_by_errno();
   temporary_.clear();
-  // The new name, too, is to outlive a loss of power; where folders cannot be synchronised, it comes as it may.
+  // Synchronise the folder, so that the new name outlives a loss of power, too. Where that is impossible, it is left to
+  // the system.
   const fs::path folder = fs::path(place_).parent_path();
   const Descriptor descriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY);
   if (descriptor.is_open()) descriptor.synchronise();

@@ -1,31 +1,43 @@
 #pragma once
-/// Writes files as a whole: on failure the file of before stays.
+/// Writes files as a whole: if that fails, the file that was there before stays.
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace flexarm {
 
-/// A file beside the place that it is for, which is removed again unless it is put there.
+/// Calls `work`. @throws std::runtime_error with `subject`, a space, and the text of the one that `work` throws
+template <class Work>
+void with_subject(const std::string& subject, const Work& work) {
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(subject + " " + error.what());
+  }
+}
+
+/// A temporary file beside its final place. It is removed unless it is put in place.
 class UnfinishedFile {
  public:
-  /// Others write it, at temporary().
-  /// @throws std::runtime_error saying why nothing can be put at `path`.
+  /// For a file that another writer writes, at temporary().
+  /// @throws std::runtime_error that says why no file can be put at `path`.
   explicit UnfinishedFile(const std::string& path);
-  /// Writes `text` to where it outlives a loss of power.
-  /// @throws std::runtime_error saying why that cannot be, or why nothing can be put at `path`.
+  /// Writes `text` to the temporary file, so that it outlives a loss of power.
+  /// @throws std::runtime_error that says why this fails, or why no file can be put at `path`.
   UnfinishedFile(const std::string& path, std::string_view text);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const std::string& temporary() const { return temporary_; }
-  /// In the place of what is at `path`, where it outlives a loss of power; who wrote it has closed it.
-  /// @throws std::runtime_error saying why that cannot be.
+  /// Replaces the file at `path` by the temporary one, so that it outlives a loss of power. Its writer must have closed
+  /// it.
+  /// @throws std::runtime_error that says why this fails.
   void put_in_place();
 
  private:
-  std::string place_, temporary_;  // the one to be replaced, and that beside it; empty: there is none any more
+  std::string place_, temporary_;  // final place; the file beside it, empty if there is none
 };
 
 }  // namespace flexarm

@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-/// The link's frame as seen from the node that carries the point.
+/// The node that carries the point, and the link's frame relative to this node.
 Attachment carrier_of(const Model& model, const LinkFrame& link, const Vector3& point) {
   if (!link.beam) return link.frame;
   const auto pose = [&](int node) { return Pose{model.nodes[node].position, model.nodes[node].orientation}; };
@@ -52,11 +52,12 @@ void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrench
     throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
 }
 
-// ---------------------------------------------------------------- as displays show them
+// ---------------------------------------------------------------- for displays
 
 namespace {
 
-/// A load at `value` of its history. `node`: its pose about the origin of the state, `velocity`: its {v, w}.
+/// The wrench of a load whose function of time has this `value`. `node`: the node's pose relative to the state's
+/// origin, `velocity`: its {v, w}.
 ActingWrench shown(const NodalLoad& load, double value, const NodePose& node, const Vector6& velocity,
                    const Vector3& origin) {
   const Quaternion axes = load.follows ? node.orientation : Quaternion::Identity();
@@ -82,7 +83,7 @@ void effort_wrenches(const Model& model, const State& state, std::vector<ActingW
     const Vector6 column = slave.columns.col(coordinate.component);
     ActingWrench& out = wrenches.emplace_back();
     out.position = moved_origin(joint, slave_node_pose(joint, nodes));
-    // The effort's power is that of the wrench: a moment where the coordinate turns, a force where it only travels.
+    // The wrench has the power of the effort: it is a moment if the coordinate turns, and a force if it only travels.
     const bool turns = joint.kind != JointMapKind::Slide && !column.tail<3>().isZero(0);
     const Vector3 rate = turns ? column.tail<3>() : column.head<3>();
     const double square = rate.squaredNorm();

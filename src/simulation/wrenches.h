@@ -1,5 +1,5 @@
 #pragma once
-/// Wrenches that are applied to links, and forces and moments with their places, for displays.
+/// Converts wrenches on links to loads on nodes. Lists forces and moments with their places, for displays.
 
 #include <vector>
 
@@ -11,19 +11,19 @@
 
 namespace flexarm {
 
-/// On a rigid link at the point, on a flexible one carried by the section of the node that is nearest in the undeformed
-/// link.
-/// @throws std::invalid_argument if it is not finite, or its link is fixed to the world; std::out_of_range if there is
-///   no such link.
+/// Converts a wrench to a load on a node. On a flexible link, the point is carried by the section of the node that is
+/// nearest to it in the undeformed link.
+/// @throws std::invalid_argument if the wrench is not finite, or its link is fixed to the world; std::out_of_range if
+/// there is no such link.
 NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench);
 
-/// @throws std::invalid_argument if one of them pulls and the scheme is one that interpolates forces in time.
+/// @throws std::invalid_argument if a wrench pulls and the scheme interpolates forces in time.
 void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrenches);
 
-// ---------------------------------------------------------------- as displays show them
+// ---------------------------------------------------------------- for displays
 
-/// Per coordinate, what an effort of one does upon the joint's slave, at the origin of the moved joint frame, about the
-/// origin of the state. Replaces `wrenches`.
+/// For each coordinate, the wrench of a unit effort on the joint's slave, at the origin of the moved joint frame. Its
+/// position is relative to the state's origin. Replaces `wrenches`.
 void effort_wrenches(const Model& model, const State& state, std::vector<ActingWrench>& wrenches);
 
 /// As Simulation::outside_wrenches().

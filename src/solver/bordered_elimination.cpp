@@ -16,7 +16,7 @@ void for_each_master(const Model& model, const JointMap& joint, NodeRange window
   }
 }
 
-/// What a rigid arm makes of the master's motion: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
+/// Effect of the master's motion on the slave over a rigid lever arm: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
 Matrix6 arm_columns(const Vector3& lever) {
   Matrix6 out = Matrix6::Identity();
   out.topRightCorner<3, 3>() << 0, lever.z(), -lever.y(), -lever.z(), 0, lever.x(), lever.y(), -lever.x(), 0;
@@ -41,8 +41,9 @@ BorderedElimination::BorderedElimination(const Model& model, const DegreesOfFree
   reserve();
 }
 
-/// For any windows; more is allocated where pivots are passed on again and again. What may be coupled, but is not, as
-/// beams far from each other, takes no memory: what has not been written to is not there yet.
+/// Reserves memory that suffices for any windows of sliders. More is allocated only if pivots are postponed repeatedly.
+/// Memory for couplings that may occur but do not, such as those of distant beams, is reserved but not touched, so that
+/// the system does not provide it.
 void BorderedElimination::reserve() {
   std::size_t scalars = 0, fours = 0;
   int most = 0;
@@ -82,7 +83,7 @@ std::size_t BorderedElimination::allocate(int numbers) {
 bool BorderedElimination::eliminate(int index) {
   const TreePart& part = order_.parts()[index];
   Factors& factors = factors_[index] = {};
-  if (part.front != index) return true;  // and leaves nothing to that front
+  if (part.front != index) return true;  // it is eliminated later, in the front of another part
   lay_out(index);
   assemble(index);
   for_each_member(index, [&](const TreePart& member) {
@@ -120,8 +121,8 @@ bool BorderedElimination::is_folded(const TreePart& part, int variable) const {
                      [&](int i) { return dof_.mimics[i].slave_variable == variable; });
 }
 
-/// Nodes that are complete, what was passed on without a pivot, coordinates and multipliers that are complete; what
-/// rides along; what is folded.
+/// Sets the rows and columns of the front, in this order: complete nodes; postponed pivots of earlier parts; complete
+/// coordinates and multipliers; riders, which later parts eliminate; variables that are folded.
 void BorderedElimination::lay_out(int index) {
   const TreePart& part = order_.parts()[index];
   front_.clear();
@@ -133,7 +134,7 @@ void BorderedElimination::lay_out(int index) {
   });
   for_each_member(index, [&](const TreePart& member) {
     for (int child = member.first_child; child >= 0; child = order_.parts()[child].next_sibling) {
-      const Factors& f = factors_[child];  // without any where the child is a member
+      const Factors& f = factors_[child];  // empty if the child is a member of this front
       const auto rows = scalars_.begin() + f.rows + f.pivots, columns = scalars_.begin() + f.columns + f.pivots;
       front_.rows.insert(front_.rows.end(), rows, rows + f.delayed);
       front_.columns.insert(front_.columns.end(), columns, columns + f.delayed);
@@ -174,7 +175,7 @@ void BorderedElimination::assemble(int index) {
 
 void BorderedElimination::add_diagonal(int variable) {
   const int first = dof_.first[variable], size = dof_.size[variable];
-  if (variable >= dof_.node_count + dof_.joint_count) return;  // multipliers have none
+  if (variable >= dof_.node_count + dof_.joint_count) return;  // multipliers have no diagonal block
   for (int r = 0; r < size; ++r)
     for (int c = 0; c < size; ++c)
       if (is_placed_[first + r] && is_placed_[first + c])
@@ -194,7 +195,7 @@ void BorderedElimination::add_closure(int k) {
         front_.add(first[i], first[j], &values(place[i], place[j]), count[i], count[j], distance);
 }
 
-/// But for what nodes have with themselves, which is on their own diagonals.
+/// Adds the coupling without the blocks of nodes with themselves, which are in the diagonal blocks.
 void BorderedElimination::add_coupling(int k) {
   const std::vector<int>& nodes = order_.coupled_nodes(k);
   const Eigen::MatrixXd& values = blocks_.couplings[k];
@@ -207,7 +208,7 @@ void BorderedElimination::add_coupling(int k) {
 void BorderedElimination::add_remainder(const Factors& f) {
   const int size = f.size - f.pivots;
   const double* values = memory(f.remainder);
-  runs_.clear();  // of columns that follow each other here, too
+  runs_.clear();  // ranges of columns that are contiguous in this front as well
   for (int k = 0; k < size; ++k) {
     const int place = front_.column_place(scalars_[f.columns + f.pivots + k]);
     if (runs_.empty() || runs_.back().place + k - runs_.back().from != place) runs_.push_back({k, place, 0});

@@ -1,5 +1,5 @@
 #pragma once
-/// Elimination of those parts of a tree whose fronts have a border: lines with their sliders, loops, mimics.
+/// Eliminates those parts of a tree whose fronts have a border: sliders and their lines, loops, mimics.
 
 #include <vector>
 
@@ -9,21 +9,23 @@
 
 namespace flexarm {
 
-/// One dense front for each part that TreeOrder finds to have a border, or for several of them: what they add, what
-/// others have passed on, the fold of a slave, elimination of what is complete. What remains goes into the block of the
-/// inboard node or, where it couples more than that, to a later part. A released coordinate or a multiplier without a
-/// pivot that is large enough is passed on, too, until it finds one: multipliers have zeros on their diagonal, and a
-/// loop that is cut open may move without inertia or stiffness.
+/// Each part that has a border according to TreeOrder has a dense front, which several parts may share. A front is
+/// assembled from the blocks of its parts and the remainders of earlier parts. Then its slaves are folded, and its
+/// complete variables are eliminated. The remainder is added to the block of the inboard node or, if it couples more
+/// variables, is passed to a later part. A joint coordinate or multiplier without a sufficiently large pivot is
+/// postponed to the next front, until it has one. Multipliers need this because their diagonal is zero. So do the
+/// coordinates of a loop that is cut open, which may move without inertia or stiffness.
 class BorderedElimination {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive this object.
   BorderedElimination(const Model& model, const DegreesOfFreedom& dof, const TreeOrder& order, TreeBlocks& blocks);
 
-  /// Forgets all factors.
+  /// Discards all factors.
   void begin();
-  /// False if the part is singular. Of parts that share a front the last one eliminates all.
+  /// Returns false if the part is singular. If parts share a front, the elimination happens in the last of them.
   bool eliminate(int part);
-  /// `values`: per scalar of the mechanism, the right-hand side by rows, and after backward() the solution by columns.
+  /// `values`: per scalar of the mechanism; the right-hand side, named by rows. After backward(): the solution, named
+  /// by columns.
   void forward(int part, const Eigen::VectorXd& b, std::vector<double>& values);
   void backward(int part, std::vector<double>& values) const;
 
@@ -32,8 +34,8 @@ class BorderedElimination {
   struct Factors {
     int size = 0, pivots = 0, delayed = 0, stride = 0;
     std::size_t rows = 0, columns = 0, lower = 0, upper = 0, reciprocals = 0, forwarded = 0;
-    std::size_t remainder = 0;  ///< Schur complement for a later part
-    int joint = -1;             ///< whose slave is folded
+    std::size_t remainder = 0;  ///< Schur complement that is passed to a later part
+    int joint = -1;             ///< the joint whose slave is folded
     int target_count = 0, held_count = 0;
     std::size_t targets = 0, left = 0, right = 0, held = 0, mimics = 0;
   };
@@ -71,13 +73,13 @@ class BorderedElimination {
   TreeBlocks& blocks_;
   DenseFront front_;
   int candidates_ = 0;
-  std::vector<int> certain_;      // of the front's nodes, those of each of its parts end there
-  std::vector<char> is_placed_;   // per scalar: it has rows and columns in fronts
+  std::vector<int> certain_;      // ends of the groups of nodes in the front, one group for each of its parts
+  std::vector<char> is_placed_;   // per scalar: whether fronts have a row and a column for it
   std::vector<Factors> factors_;  // per part
   std::vector<int> scalars_;
   std::vector<Run> runs_;
   FrontMemory memory_;
-  std::size_t used_ = 0;  // of the memory
+  std::size_t used_ = 0;  // number of used elements of memory_
   mutable FrontMemory work_;
 };
 

@@ -1,4 +1,4 @@
-// Forward elimination and back substitution in parts with a border.
+// BorderedElimination: forward elimination and back substitution.
 #include <algorithm>
 
 #include "math/simd.h"
@@ -21,7 +21,7 @@ void BorderedElimination::forward(int index, const Eigen::VectorXd& b, std::vect
     const int master = dof_.first[mimic.master_variable];
     if (is_placed_[master]) values[master] += memory(f.mimics)[2 * i] * values[dof_.first[mimic.slave_variable]];
   }
-  for (int k = 0; k < f.held_count; ++k) {  // nothing of what was eliminated is in their rows
+  for (int k = 0; k < f.held_count; ++k) {  // earlier eliminations do not contribute to these replaced rows
     const int scalar = scalars_[f.held + k];
     values[scalar] = b[dof_.equation[scalar]];
   }

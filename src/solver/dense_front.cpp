@@ -11,9 +11,10 @@
 namespace flexarm {
 namespace {
 
-/// A pivot that may wait is taken if it is so large beside its column: growth by its inverse leaves twelve digits.
+/// A pivot that may be postponed is taken if it is at least this large relative to its column. The growth by its
+/// inverse then leaves twelve correct digits.
 constexpr double kThreshold = 1e-4;
-/// A pivot below that, beside what its column was made of, is round-off.
+/// A pivot below this, relative to the original size of its column, is round-off.
 constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 /// target -= factor * source.
@@ -22,7 +23,7 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   for (int v = first; v < last; ++v) store(load(target + 4 * v) - factors * load(source + 4 * v), target + 4 * v);
 }
 
-/// The same for four rows at once, which share the loads of the source.
+/// The same for four rows at once, so that the source is loaded only once.
 [[gnu::always_inline]] inline void subtract_four(double* rows, int stride, const double* factors, const double* source,
                                                  int first, int last) {
   const Lanes f0 = broadcast(factors[0]), f1 = broadcast(factors[1]), f2 = broadcast(factors[2]),
@@ -37,8 +38,8 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   }
 }
 
-/// The rows of a border lose `count` pivots at once: four rows and two vectors of columns stay in registers meanwhile.
-/// `factors`: of the first pivot and the four rows, `upper`: the first pivot's row.
+/// Subtracts `count` pivots at once from four rows of a border. The four rows and `Vectors` vectors of columns stay in
+/// registers. `factors`: of the first pivot and the four rows; `upper`: row of the first pivot.
 template <int Vectors>
 [[gnu::always_inline]] inline void subtract_products(double* rows, int stride, const double* factors, int factor_stride,
                                                      const double* upper, int count) {
@@ -68,7 +69,7 @@ template <int Vectors>
   return a > b ? a : b;
 }
 
-/// Largest absolute value; every other vector goes its own way, so that they do not wait for each other.
+/// Largest absolute value. Even and odd vectors are independent chains, so that they can run in parallel.
 [[gnu::always_inline]] inline double largest(const double* values, int lanes) {
   Lanes even = {}, odd = {};
   int v = 0;
@@ -81,7 +82,7 @@ template <int Vectors>
   return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
-/// What DenseFront::eliminate() works on; in a loop that simd::run() compiles as a whole.
+/// The data and operations of DenseFront::eliminate(), in a form that simd::run() compiles as a whole.
 struct Elimination {
   int active, candidates, stride, lower_stride;
   double *values, *lower, *column_sizes, *scales, *reciprocals;
@@ -89,12 +90,12 @@ struct Elimination {
   int pivots = 0;
 
   [[gnu::always_inline]] inline double* row(int i) { return values + static_cast<std::size_t>(stride) * i; }
-  /// Of rows among which pivots are looked for, and of those beside which they have to be large enough.
+  /// Computes the scales of rows and columns, for rows in which pivots are searched or with which pivots are compared.
   [[gnu::always_inline]] inline bool scale(int rows_in_all) {
     const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
     for (int i = 0; i < rows_in_all; ++i) {
       double* own = row(i);
-      for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
+      for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // clear the columns of folded variables
       const double size = largest(own, lanes);
       if (!std::isfinite(size)) return false;
       scales[i] = size > 0 ? 1 / size : 0.0;
@@ -113,7 +114,8 @@ struct Elimination {
         if (!take_pivot(pivots, true, group, group)) return false;
       clear_below(first, group);
     }
-    // A column that had no pivot may have one after others. Where all must go, the best come first.
+    // A column without a sufficient pivot may get one after other eliminations. If all must be taken, the best come
+    // first.
     for (const bool must : {false, true}) {
       if (must && !all) break;
       for (int before = -1; before != pivots && pivots < candidates;) {
@@ -129,7 +131,7 @@ struct Elimination {
     return lower + static_cast<std::size_t>(lower_stride) * k;
   }
 
-  /// Of a column among rows, scaled by rows.
+  /// Largest absolute value of a column within a range of rows, scaled by rows; its row is written to `at`.
   [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at) {
     double most = 0;
     at = first;
@@ -140,7 +142,8 @@ struct Elimination {
     return most;
   }
 
-  /// Takes a pivot in the column from the rows up to `searched`, if one is good enough, off those up to `last_row`.
+  /// Eliminates a column if the rows below `searched` have a sufficient pivot for it; updates the rows below
+  /// `last_row`.
   [[gnu::always_inline]] inline bool take_pivot(int column, bool must, int searched, int last_row) {
     int pivot_row, other;
     const double size = largest_entry(column, pivots, searched, pivot_row);
@@ -156,7 +159,7 @@ struct Elimination {
     const int first = pivots / 4, last = lanes_for(active);
     int i = pivots + 1;
     for (; i + 4 <= last_row; i += 4) {
-      bool couples = false;  // a border has zeros where it has not come to be coupled yet
+      bool couples = false;  // a border has zeros where it is not coupled yet
       for (int k = i; k < i + 4; ++k) {
         factors[k] = row(k)[pivots] * reciprocal;
         couples = couples || factors[k] != 0;
@@ -171,7 +174,7 @@ struct Elimination {
     return true;
   }
 
-  /// Subtracts the pivots from the first one on from rows that had no part in the search for them.
+  /// Subtracts all pivots from `first_pivot` on from the rows in which these pivots were not searched.
   [[gnu::always_inline]] inline void clear_below(int first_pivot, int first_row) {
     if (pivots == first_pivot) return;
     for (int k = first_pivot; k < pivots; ++k) {
@@ -256,7 +259,7 @@ void DenseFront::add(int row, int column, const double* values, int row_count, i
   const int first_row = row_place_[row], first_column = column_place_[column];
   assert(first_row >= 0 && first_row + row_count <= size() && "scalars of the front");
   assert(first_column >= 0 && first_column + column_count <= size() && "scalars of the front");
-  if (column_count == 6) {  // most of them: a loop that is unrolled
+  if (column_count == 6) {  // the most frequent case, as an unrolled loop
     for (int r = 0; r < row_count; ++r) {
       double* to = this->row(first_row + r) + first_column;
       for (int c = 0; c < 6; ++c) to[c] += values[distance * c + r];
@@ -274,7 +277,7 @@ void DenseFront::fold(int slave, int count, const double* left, const double* ri
   const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size()),
             rows_in_all = size();
   assert(place >= 0 && slave_row >= 0 && "scalars of the front");
-  right_.assign(static_cast<std::size_t>(lanes) * count, {});  // by columns of the front
+  right_.assign(static_cast<std::size_t>(lanes) * count, {});  // indexed by columns of the front
   double *columns_of = numbers(right_), *values = numbers(values_);
   for (int k = 0; k < count; ++k)
     for (int t = 0; t < target_count; ++t)

@@ -1,5 +1,5 @@
 #pragma once
-/// The fronts of all elements of a tree, without borders. (tree.md)
+/// The fronts of all elements of a tree that have no border. (docs/notes/tree.md)
 
 #include <array>
 #include <cstddef>
@@ -10,12 +10,12 @@
 
 namespace flexarm {
 
-/// Eliminates elements with `Unknowns` unknowns per node, see ElementFront. Blocks of elements and of nodes stand
-/// ElementFront::kBlock apart, values of nodes kColumn.
+/// Eliminates elements with `Unknowns` unknowns per node, see ElementFront. Memory layout: blocks of elements and of
+/// nodes are ElementFront::kBlock apart, values of nodes kColumn.
 template <int Unknowns>
 class ElementElimination {
  public:
-  /// The order must outlive it.
+  /// The order must outlive this object.
   explicit ElementElimination(const TreeOrder& order) : order_(order) {
     std::size_t pivots = 0;
     for (const TreePart& part : order.parts()) {
@@ -26,12 +26,12 @@ class ElementElimination {
     condensed_.resize(order.parts().size(), nullptr);
   }
 
-  /// The front of a part is one of the nodes at the element's ends, with these blocks in the place of `elements`: its
-  /// interior nodes are eliminated elsewhere. Or, with null, one of all its nodes, as it is at first.
+  /// Tells that the interior nodes of an element are eliminated elsewhere. Its front then has only the two nodes at its
+  /// ends, with `blocks` in place of `elements`. With null, the front has all nodes of the element, as initially.
   void set_condensed(int part, double* blocks) { condensed_[part] = blocks; }
 
-  /// Of a part that is an element; right-hand sides, if `values` is not null, go through forward() on the way. False if
-  /// a pivot is zero or not finite.
+  /// For a part that is an element. If `values` is not null, right-hand sides get their forward elimination as well.
+  /// Returns false if a pivot is zero or not finite.
   bool eliminate(int part, double* elements, double* diagonals, double* values) {
     const std::array<double*, 5> at_nodes = of_nodes(part, diagonals, Front<2>::kBlock);
     std::array<double*, 5> r{};
@@ -82,7 +82,7 @@ class ElementElimination {
   const TreeOrder& order_;
   std::vector<std::size_t> first_pivot_;  // per part
   std::vector<unsigned char> pivots_;
-  std::vector<double*> condensed_;  // per part: blocks of its ends, or null
+  std::vector<double*> condensed_;  // per part: blocks of the two end nodes, or null
 };
 
 }  // namespace flexarm

@@ -14,7 +14,7 @@ namespace {
 
 using LaneMask = long long __attribute__((vector_size(32)));
 
-/// Of a lane j: those behind it, and those before it.
+/// Masks for a lane j: the lanes after it, and the lanes before it.
 constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
 constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1, -1, -1, 0}};
 
@@ -22,22 +22,22 @@ constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(lanes) & mask);
 }
 
-/// Sizes of a front. Factors: columns of L and U in one matrix (unit diagonal of L left out, reciprocal diagonal of U),
-/// padded to whole lanes, then the columns of A01, then the columns of X.
+/// Sizes of a front. Layout of the factors: columns of L and U in one matrix (without the unit diagonal of L, with the
+/// reciprocal diagonal of U), padded to whole lanes; then the columns of A01; then the columns of X.
 template <int Nodes, int U>
 struct Sizes {
   static constexpr int n = ElementFront<Nodes, U>::kEliminated;
-  static constexpr int pivot_lanes = lanes_for(n);  // of the columns of A11 in a row
+  static constexpr int pivot_lanes = lanes_for(n);  // lanes of a row of A11
   static constexpr int right_lanes = lanes_for(U);
-  static constexpr int row_lanes = pivot_lanes + right_lanes;  // and of A10
+  static constexpr int row_lanes = pivot_lanes + right_lanes;  // including the row of A10
   static constexpr int stride = 4 * pivot_lanes;               // of the columns of L and U
   static constexpr int column = ElementFront<Nodes, U>::kColumn, block = ElementFront<Nodes, U>::kBlock;
   static constexpr int coupling = stride * n, elimination = coupling + column * n;
   static_assert(elimination + U * n <= ElementFront<Nodes, U>::kSize);
 };
 
-/// Rows of [A11 A10 r1], and the multipliers of the elimination. The right-hand side has the first number that the
-/// columns of A10 leave of their lanes.
+/// Rows of [A11 A10 r1], and the multipliers of the elimination. The right-hand side is stored in the first number of
+/// the lanes that the columns of A10 leave unused.
 template <int Nodes, int U>
 struct Rows {
   static constexpr int n = Sizes<Nodes, U>::n;
@@ -55,7 +55,7 @@ template <int Nodes, int U>
 [[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, double* const* r,
                                           Rows<Nodes, U>& rows) {
   using S = Sizes<Nodes, U>;
-  // What fills the lanes up.
+  // Clear the padding of the lanes.
   for (auto& row : rows.value) row[Sizes<Nodes, U>::pivot_lanes - 1] = row[Sizes<Nodes, U>::row_lanes - 1] = Lanes{};
   for (int i = 1; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j) {
@@ -71,7 +71,7 @@ template <int Nodes, int U>
   for (int i = 0; i < S::n && r; ++i) rows.right(i)[U] = r[1 + i / U][i % U];
 }
 
-/// Subtracts the pivot's row from those below, so that nothing is left of column k there.
+/// Subtracts the pivot's row from the rows below, so that column k becomes zero there.
 template <int Nodes, int U>
 [[gnu::always_inline]] inline void clear_below(Rows<Nodes, U>& rows, int k, double* reciprocal) {
   constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
@@ -83,11 +83,11 @@ template <int Nodes, int U>
   }
 }
 
-/// L U with the pivots on the diagonal, carried out on A10 and r1 as well. A pivot is what products of a row's
-/// multipliers and a column's entries have left of the entry that stood there. Where all are positive and none has
-/// grown beyond twice that entry, the products are of the matrix' own size, and round-off is no worse than after a
-/// search for pivots. (Where A11 is symmetric and positive definite they all have one sign, and pivots only fall;
-/// scaling rows and columns changes nothing.) False otherwise.
+/// L U factorisation with pivots on the diagonal, applied to A10 and r1 as well. A pivot is the original diagonal entry
+/// minus products of multipliers and entries. If all pivots are positive, and none is larger than twice its original
+/// entry, these products are no larger than the matrix, and round-off is no worse than with a pivot search. (If A11 is
+/// symmetric and positive definite, all products are positive and pivots only decrease. The criterion does not depend
+/// on the scaling of rows and columns.) Returns false if the criterion is not met.
 template <int Nodes, int U>
 [[gnu::always_inline]] inline bool factorise_on_diagonal(Rows<Nodes, U>& rows, double* reciprocal) {
   constexpr int n = Sizes<Nodes, U>::n;
@@ -103,7 +103,7 @@ template <int Nodes, int U>
   return stays_small;
 }
 
-/// The same with partial pivoting.
+/// L U factorisation with partial pivoting.
 template <int Nodes, int U>
 [[gnu::noinline]] bool factorise_with_pivots(Rows<Nodes, U>& rows, double* reciprocal, unsigned char* pivots) {
   constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
@@ -138,7 +138,7 @@ template <int Nodes, int U>
     gather<Nodes, U>(blocks, diagonals, r, rows);
     if (!factorise_with_pivots<Nodes, U>(rows, reciprocal, pivots)) return false;
   }
-  for (int k = n - 1; k >= 0; --k) {  // X; column by column, so that rows do not wait for each other
+  for (int k = n - 1; k >= 0; --k) {  // computes X column by column, so that the rows are independent of each other
     Lanes solved[S::right_lanes];
     for (int v = 0; v < S::right_lanes; ++v)
       rows.value[k][right + v] = solved[v] = reciprocal[k] * rows.value[k][right + v];
@@ -147,7 +147,7 @@ template <int Nodes, int U>
       for (int v = 0; v < S::right_lanes; ++v) rows.value[i][right + v] -= upper * solved[v];
     }
   }
-  for (int i = 0; i < U; ++i) {  // S
+  for (int i = 0; i < U; ++i) {  // computes S
     Lanes sums[S::right_lanes] = {};
     for (int j = 0; j < n; ++j) {
       const double coupling = blocks[S::block * (1 + j / U) + S::column * (j % U) + i];
@@ -158,7 +158,7 @@ template <int Nodes, int U>
   }
   for (int i = 0; i < n && r; ++i) r[1 + i / U][i % U] = rows.right(i)[U];
   double coupling[S::column * n];
-  std::memcpy(coupling, blocks + S::block, sizeof(coupling));  // the blocks (0, j) stand in a row
+  std::memcpy(coupling, blocks + S::block, sizeof(coupling));  // the blocks (0, j) are contiguous
   for (int c = 0; c < n; ++c)
     for (int i = 0; i < S::stride; ++i)
       blocks[S::stride * c + i] = i >= n ? 0.0 : i > c ? rows.lower[i][c] : i == c ? reciprocal[c] : rows.row(i)[c];

@@ -1,18 +1,18 @@
 #pragma once
-/// Vectors of four numbers, for the loops over the rows of fronts, and memory in whole ones.
+/// Vectors of four numbers for the loops over rows of fronts, and memory in multiples of four numbers.
 
 #include <cstddef>
 #include <cstring>
 #include <limits>
 #include <vector>
 
-// Vectors are passed between functions that are always inlined only: that their passing differs between processors does
-// not matter.
+// The warning concerns vectors as function arguments, which are passed in different ways by different processors. Here
+// all such functions are always inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace flexarm {
 
-/// Four numbers; two instructions where the processor has vectors of two.
+/// Four numbers; on processors with vectors of two numbers, the compiler uses two instructions.
 using Lanes = double __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Lanes load(const double* from) {
@@ -27,7 +27,7 @@ using Lanes = double __attribute__((vector_size(32)));
   return Lanes{value, value, value, value};
 }
 
-/// Of pivots: numbers that have a reciprocal.
+/// Limits of pivots: numbers that have a reciprocal.
 constexpr double kSmallestPivot = std::numeric_limits<double>::min(),
                  kLargestPivot = std::numeric_limits<double>::max();
 
@@ -40,7 +40,7 @@ struct alignas(32) FourNumbers {
 };
 using FrontMemory = std::vector<FourNumbers>;
 
-/// All of them, one behind the other.
+/// The memory as a contiguous array of numbers.
 inline double* numbers(FrontMemory& memory) {
   return reinterpret_cast<double*>(memory.data());
 }

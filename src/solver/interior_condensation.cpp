@@ -12,7 +12,7 @@ namespace {
 
 using Mask = Pack::Mask;
 
-/// Node and component of an interior scalar.
+/// The node that an interior scalar belongs to.
 constexpr int node_of(int scalar) {
   return 1 + scalar / 6;
 }
@@ -21,14 +21,14 @@ constexpr int end_node(int end) {
   return end == 0 ? 0 : Nodes - 1;
 }
 
-/// The four blocks of a lane's ends, 36 numbers each.
+/// The four blocks of the end nodes of one lane, 36 numbers each.
 template <int Nodes>
 [[gnu::always_inline]] inline double* ends_of(CondensedPack<Nodes>& pack, int lane) {
   static_assert(sizeof(Matrix6T<Pack>) == 4 * 36 * sizeof(double));
   return reinterpret_cast<double*>(pack.system.tangent[end_node<Nodes>(lane / 2)][end_node<Nodes>(lane % 2)].data());
 }
 
-/// Numbers of nodes, `distance` apart, of the lanes.
+/// For each lane, the address of the numbers of a node; nodes are `distance` apart in memory.
 template <int Nodes, class Number>
 [[gnu::always_inline]] inline std::array<Number*, Pack::kLanes> of_node(const CondensedPack<Nodes>& pack, int node,
                                                                         Number* first, std::size_t distance) {
@@ -37,11 +37,11 @@ template <int Nodes, class Number>
   return places;
 }
 
-/// What the elimination makes of a pack, as long as it may have to be left whole.
+/// A copy of A_ii for the factorisation. The pack keeps its own, since it may have to be left whole.
 template <int Nodes>
 using Factors = std::array<std::array<Pack, 6 * (Nodes - 2)>, 6 * (Nodes - 2)>;
 
-/// A_ii, with what else stands on the diagonals of the nodes.
+/// Copies A_ii, and adds the other contributions to the diagonal blocks of its nodes.
 template <int Nodes>
 [[gnu::always_inline]] inline void gather(const CondensedPack<Nodes>& pack, const double* diagonals,
                                           Factors<Nodes>& rows) {
@@ -58,7 +58,8 @@ template <int Nodes>
     }
 }
 
-/// L U on the diagonal. In which lanes it is as stable as with a search for pivots: see ElementFront.
+/// L U factorisation with pivots on the diagonal. Returns the lanes in which it is as stable as with a pivot search, by
+/// the criterion of ElementFront.
 template <std::size_t n>
 [[gnu::always_inline]] inline Mask factorise(std::array<std::array<Pack, n>, n>& rows) {
   Pack entries[n];
@@ -78,7 +79,7 @@ template <std::size_t n>
   return is_stable;
 }
 
-/// x <- A_ii^-1 x, of n unknowns; factor(i, k): entry of the factors.
+/// x <- A_ii^-1 x, for n unknowns; factor(i, k): an entry of the factors.
 template <int n, class Factor>
 [[gnu::always_inline]] inline void solve(const Factor& factor, Pack* x) {
   for (int k = 0; k < n; ++k)
@@ -89,7 +90,7 @@ template <int n, class Factor>
   }
 }
 
-/// X in the place of A_ie, and the factors in that of A_ii.
+/// Replaces A_ie by X, and A_ii by its factors.
 template <int Nodes>
 [[gnu::always_inline]] inline void keep_factors(const Factors<Nodes>& rows, CondensedPack<Nodes>& pack) {
   constexpr int n = 6 * (Nodes - 2);
@@ -105,7 +106,7 @@ template <int Nodes>
     for (int k = 0; k < n; ++k) tangent[node_of(i)][node_of(k)](i % 6, k % 6) = rows[i][k];
 }
 
-/// A_ee - A_ei X, lane by lane in its place.
+/// Computes A_ee - A_ei X, and stores it lane by lane in place of A_ee.
 template <int Nodes>
 [[gnu::always_inline]] inline void eliminate(CondensedPack<Nodes>& pack) {
   constexpr int n = 6 * (Nodes - 2);
@@ -130,7 +131,7 @@ template <int Nodes>
   }
 }
 
-/// All blocks, element by element.
+/// Writes all blocks of the pack to the memory of the elements.
 template <int Nodes>
 [[gnu::always_inline]] inline void write_whole(const CondensedPack<Nodes>& pack, double* blocks) {
   for (int i = 0; i < Nodes; ++i)
@@ -142,7 +143,7 @@ template <int Nodes>
     }
 }
 
-/// True unless a pivot has to be searched for; then the tangent is as it was.
+/// Condenses a pack. Returns false if a lane needs a pivot search; the tangent is then unchanged.
 template <int Nodes>
 [[gnu::always_inline]] inline bool condense(CondensedPack<Nodes>& pack, const double* diagonals) {
   Factors<Nodes> rows;
@@ -154,7 +155,7 @@ template <int Nodes>
   return true;
 }
 
-/// Interior values of the lanes.
+/// Loads the values of the interior nodes, for all lanes.
 template <int Nodes>
 [[gnu::always_inline]] inline void get_interior(const CondensedPack<Nodes>& pack, const double* values,
                                                 Pack* interior) {

@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// K with the columns that a rigid arm to the master gives: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
+/// Columns of K with respect to the master, over a rigid lever arm: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
 Matrix6 columns_at_master(const Matrix6& tangent, const Vector3& lever) {
   Matrix6 out = tangent;
   out.col(3) += lever.y() * tangent.col(2) - lever.z() * tangent.col(1);
@@ -16,13 +16,13 @@ Matrix6 columns_at_master(const Matrix6& tangent, const Vector3& lever) {
   return out;
 }
 
-/// Rows {f, phi} moved to the master: {f, lever x f + phi}.
+/// Moves rows {f, phi} to the master: {f, lever x f + phi}.
 template <int Columns>
 void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
   for (int k = 0; k < Columns; ++k) rows.col(k).template tail<3>() += lever.cross(rows.col(k).template head<3>());
 }
 
-/// What a joint leaves at its master, whose block on the diagonal is `to`.
+/// Adds the remainder of a joint to the diagonal block `to` of its master.
 void add_to_master(const Matrix6& tangent, const FoldMaps& maps, double* to) {
   Eigen::Map<Matrix6> master(to);
   master += tangent;

@@ -6,7 +6,7 @@
 
 namespace flexarm {
 namespace {
-/// A backward error above this means that the reused pivots do not fit the values any more.
+/// With a backward error above this, the reused pivots no longer suit the values.
 constexpr double kAcceptableBackwardError = 1e-10;
 }  // namespace
 

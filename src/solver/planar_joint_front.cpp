@@ -5,14 +5,14 @@
 namespace flexarm {
 namespace {
 
-/// Columns for {dr_m + spin_m n x lever, spin_m}.
+/// Columns with respect to the master: {dr_m + spin_m n x lever, spin_m}.
 Matrix3 columns_at_master(const Matrix3& tangent, const Vector2& lever) {
   Matrix3 out = tangent;
   out.col(2) += lever.x() * tangent.col(1) - lever.y() * tangent.col(0);
   return out;
 }
 
-/// {f, phi + lever x f}.
+/// Moves rows to the master: {f, phi + lever x f}.
 template <class Rows>
 void move_rows(const Vector2& lever, Rows& rows) {
   rows.row(2) += lever.x() * rows.row(1) - lever.y() * rows.row(0);

@@ -1,5 +1,5 @@
 #pragma once
-/// Elimination of a joint's released coordinates in the plane: JointFront with {x, y, turn} at its nodes.
+/// Eliminates a joint's released coordinates in the plane: as JointFront, with {x, y, turn} for each node.
 
 #include <algorithm>
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace flexarm {
 
-/// A block of a node in the plane: columns are four numbers apart.
+/// A node's block in the plane; its columns are four numbers apart.
 using PlanarBlock = Eigen::Map<Matrix3, 0, Eigen::OuterStride<4>>;
 constexpr int kPlanarBlock = 12;
 
-/// With one coordinate, or none, everything is projected; joints with more go through JointFront in space, where the
-/// motions out of the plane, of which nothing comes, are given a stiffness of their own.
+/// For joints with at most one coordinate, everything is projected to the plane. Joints with more coordinates use
+/// JointFront in space. There, motions out of the plane get an arbitrary stiffness; their solution is zero.
 class PlanarJointFront {
  public:
   PlanarJointFront(const JointMap& joint, int variable, const DegreesOfFreedom& dof, const PlaneOfMotion& plane);
@@ -25,16 +25,16 @@ class PlanarJointFront {
 
   /// `blocks`: the diagonal blocks of all variables; those of nodes are PlanarBlock.
   bool eliminate(const FoldMaps& maps, double* const* blocks);
-  /// Forward elimination of a right-hand side: four numbers a node, and one value per scalar of the mechanism, of which
-  /// the coordinates' are used.
+  /// Forward elimination of a right-hand side. `nodes`: four numbers per node; `scalars`: one value per scalar of the
+  /// mechanism, of which only those of coordinates are used.
   void forward(const FoldMaps& maps, double* nodes, double* scalars);
   void backward(const FoldMaps& maps, double* nodes, double* scalars);
 
  private:
-  /// The same in space: blocks and values as JointFront has them.
+  /// Elimination in space: blocks and values in the form of JointFront.
   struct InSpace {
     InSpace(const JointMap& joint, int variable, const DegreesOfFreedom& dof);
-    /// Its coordinates, from all scalars and back.
+    /// Copy the coordinates' values from and to the array of all scalars.
     void take(const double* scalars) { std::copy_n(scalars + first, count, values.data() + first); }
     void give(double* scalars) const { std::copy_n(values.data() + first, count, scalars + first); }
 
@@ -50,7 +50,7 @@ class PlanarJointFront {
 
   const PlaneOfMotion* plane_;
   int slave_, master_, variable_;
-  int scalar_ = -1;  // of the one coordinate; -1: it is not unknown
+  int scalar_ = -1;  // of the only coordinate; -1: it is not an unknown
   std::optional<InSpace> space_;
   // ---- of the last elimination
   Vector2 lever_left_ = Vector2::Zero(), lever_right_ = Vector2::Zero();

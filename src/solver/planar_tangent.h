@@ -1,5 +1,5 @@
 #pragma once
-/// Block elimination along the tree of a mechanism that moves in a plane: TreeTangent with three unknowns a node.
+/// Block elimination along the tree of a mechanism that moves in a plane: TreeTangent with three unknowns per node.
 /// (docs/notes/planar.md)
 
 #include <vector>
@@ -11,20 +11,21 @@
 
 namespace flexarm {
 
-/// Takes equations and gives solutions in space, as all backends do: six for each node, of which those out of the plane
-/// are zero. Blocks of nodes and elements are PlanarBlock, in the plane's axes.
+/// Right-hand sides and solutions have six entries per node, as in all backends; those out of the plane are zero.
+/// Blocks of nodes and elements are PlanarBlock, in the plane's axes.
 class PlanarTangent : public TangentBackend {
  public:
-  /// True if every node hangs on the root by one chain of joints and elements, and nothing couples more than that.
+  /// Whether every node is connected to the root by exactly one chain of joints and elements, without further
+  /// couplings.
   static bool suits(const Model& model, const DegreesOfFreedom& dof);
 
-  /// Of a model that suits; all must outlive the solver.
+  /// The model must be one that suits(). All arguments must outlive this object.
   PlanarTangent(const Model& model, const DegreesOfFreedom& dof, const PlaneOfMotion& plane);
 
   void set_zero() override;
   void add_to_node(int node, const Matrix6& block) override;
   FoldMaps& fold_maps(int joint) override { return maps_[joint]; }
-  void fold(int) override {}  // is left to the elimination
+  void fold(int) override {}  // the elimination does this
   void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
   bool factorise() override { return eliminate(false); }
@@ -34,13 +35,13 @@ class PlanarTangent : public TangentBackend {
   const double* expanded_solution() override;
   double cost_of_factors() const override { return 2.2; }
 
-  // ---- of what does not suit
-  /// @throws std::logic_error as all of them do: what was left out without a word would make steps wrong
+  // ---- functions for mechanisms that do not suit
+  /// @throws std::logic_error, as the following functions do: ignoring these terms silently would make steps wrong
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   void couple(int index, const int* nodes, int count) override;
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   SlideMaps& slide_maps(int joint) override;
-  /// None, that is.
+  /// Throws unless `maps` is empty.
   void fold_mimics(const std::vector<MimicMap>& maps) override;
 
  private:
@@ -57,7 +58,7 @@ class PlanarTangent : public TangentBackend {
   std::vector<FoldMaps> maps_;                          // per joint
   std::vector<PlanarJointFront> joints_;                // in the model's order
   std::vector<double> nodes_, elements_, coordinates_;  // blocks
-  std::vector<double> values_, scalars_;                // four per node; per scalar: right-hand side, solution
+  std::vector<double> values_, scalars_;                // right-hand side, then solution: four per node; one per scalar
   std::vector<double> expanded_;
   int singular_variable_ = -1;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Reduces the residuals of nodes, coordinates and closures to that of the unknowns.
+/// Collects the residuals of nodes, coordinates and closures, and reduces them to those of the unknowns.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace flexarm {
 
-/// Residual per variable. Slaves are folded into their masters and released coordinates from leaf to root, then mimics;
-/// what stands in a prescribed coordinate's place after that is what drives it.
+/// Residual per variable. Slaves are folded into their masters and released coordinates, from the leaves to the root;
+/// then mimics are folded. Afterwards, the entry of a prescribed coordinate is the effort that drives it.
 class ReducedResidual {
  public:
   ReducedResidual(const Model& model, const DegreesOfFreedom& dof);
@@ -18,15 +18,15 @@ class ReducedResidual {
   double* at(int variable) { return values_.data() + dof_.first[variable]; }
   const double* at(int variable) const { return values_.data() + dof_.first[variable]; }
   Eigen::Map<Vector6> node(int node) { return Eigen::Map<Vector6>(at(node)); }
-  /// Of a slave: complete once its own slaves have been folded.
+  /// The residual of a slave is complete when its own slaves have been folded.
   Eigen::Map<const Vector6> node(int node) const { return Eigen::Map<const Vector6>(at(node)); }
 
-  /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
+  /// Adds constraint `index` of a closure with its multiplier. To be called before joints are folded.
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps);
-  /// With the maps for the slave's total residual.
+  /// Folds a joint's slave. `maps`: computed for the slave's total residual.
   void fold(int joint, const FoldMaps& maps);
   void fold(int joint, const SlideMaps& maps);
-  /// Sets the geometric parts of the maps.
+  /// Folds all mimics, and sets the geometric parts of `maps`.
   void fold_mimics(std::vector<MimicMap>& maps);
   /// Writes one entry per equation.
   void gather(Eigen::VectorXd& residual) const;

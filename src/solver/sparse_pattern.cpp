@@ -1,4 +1,5 @@
-// The blocks of the tangent, the program of its reduction, and the pattern of the reduced matrix.
+// SparseTangent: the blocks of the tangent, the list of operations that reduces it, and the pattern of the reduced
+// matrix.
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
@@ -8,7 +9,7 @@
 
 namespace flexarm {
 
-/// Collects blocks and folds symbolically.
+/// Creates blocks, and performs the folds symbolically.
 class SparseTangent::PatternBuilder {
  public:
   PatternBuilder(SparseTangent& assembler)
@@ -70,15 +71,15 @@ class SparseTangent::PatternBuilder {
     const JointMap& joint = a_.model_.joints[j];
     const SlideLine& line = a_.model_.slide_lines[joint.line];
     const int s = a_.dof_.variable_of_node(joint.slave), u = a_.dof_.variable_of_joint(j);
-    std::vector<int> place(a_.dof_.size.size(), -1);  // of a variable in the line
+    std::vector<int> place(a_.dof_.size.size(), -1);  // per variable: index of the node in the line
     for (std::size_t k = 0; k < line.nodes.size(); ++k) place[line.nodes[k]] = static_cast<int>(k);
     const int count = static_cast<int>(line.nodes.size()), pieces = static_cast<int>(line.pieces.size());
-    std::vector<int> partners_end(count);  // a node is active together with those between it and this one
+    std::vector<int> partners_end(count);  // per node: it can be active together with all nodes before this index
     for (int p = 0; p < pieces; ++p) {
       const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
       for (int k = active.first; k < active.end; ++k) partners_end[k] = std::max(partners_end[k], active.end);
     }
-    // Blocks of `other` with every node of the line with which it can be active.
+    // The blocks of `other` with all nodes of the line that can be active together with it.
     const auto blocks = [&](int other, bool other_is_row) {
       const int first = static_cast<int>(a_.slide_blocks_.size());
       for (int k = 0; k < count; ++k) {
@@ -195,7 +196,7 @@ void SparseTangent::build_pattern() {
   std::transform(element_places_.begin(), element_places_.end(), std::back_inserter(element_blocks_), place);
   written_.reserve(blocks_.size());
   live_.assign(blocks_.size(), true);
-  build_compressed_columns();  // the largest pattern: all later ones fit into its memory
+  build_compressed_columns();  // the largest possible pattern, so that the memory suffices for all later ones
   copies_.reserve(row_indices_.size());
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     if (model_.joints[j].kind != JointMapKind::Slide) continue;
@@ -230,7 +231,7 @@ void SparseTangent::update_pattern() {
   ++pattern_;
 }
 
-/// The folds once more, for the blocks that are not zero for good.
+/// Repeats the folds symbolically, to find the blocks that are not always zero.
 void SparseTangent::mark_live_blocks() {
   std::fill(live_.begin(), live_.end(), false);
   const auto mark = [&](int block) {

@@ -128,7 +128,7 @@ void SparseTangent::fold_slide_rows(const SlideFold& fold, const SlideMaps& maps
   for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) {
     const SlideOperation& op = slide_rows_[f];
     const Rows from = Eigen::Map<const Rows>(values_.data() + blocks_[op.source].offset, 6, op.size);
-    if (from.isZero(0)) continue;  // a node of the line that is not active
+    if (from.isZero(0)) continue;  // for example a node of the line that is not active
     Eigen::Map<Row>(values_.data() + blocks_[op.to_released].offset, op.size) +=
         maps.released_left.transpose().lazyProduct(from);
     for (int k = 0; k < maps.count; ++k)
@@ -172,7 +172,7 @@ void SparseTangent::fold_rows(const JointFold& fold, const FoldMaps& maps) {
 
 void SparseTangent::add_geometric(const Geometric& geometric, const FoldMaps& maps) {
   const int count = static_cast<int>(maps.left.cols());
-  const auto add = [&](int block, int rows, int columns, const auto& corner) {  // the last rows and columns
+  const auto add = [&](int block, int rows, int columns, const auto& corner) {  // to the last rows and columns
     if (block < 0) return;
     Eigen::Map<Eigen::MatrixXd> to(values_.data() + blocks_[block].offset, rows, columns);
     to.bottomRightCorner(corner.rows(), corner.cols()) += corner;
@@ -231,7 +231,7 @@ bool SparseTangent::solve(Eigen::VectorXd& b) {
 }
 
 double SparseTangent::cost_of_factors() const {
-  return 5;  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"
+  return 5;  // measured: bench_kernels --benchmark_filter=step_shares, counter "new/kept"
 }
 
 }  // namespace flexarm

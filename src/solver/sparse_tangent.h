@@ -1,6 +1,6 @@
 #pragma once
-/// The tangent as a sparse matrix of the unknowns: slaves are folded into their masters and released coordinates, block
-/// by block, along a program that is fixed when the model is built; KLU factorises what is left.
+/// The tangent as a sparse matrix of the unknowns. Slaves are folded into their masters and released coordinates, block
+/// by block, by a list of operations that is fixed when the model is built. KLU factorises the reduced matrix.
 
 #include <optional>
 #include <vector>
@@ -12,22 +12,22 @@ namespace flexarm {
 
 /// Block-sparse nodal tangent and its reduction to compressed columns.
 ///
-/// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master
-/// m: first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
-/// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
+/// Each pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master m
+/// first changes columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right. Then it changes rows, (u,j) += left^T (s,j)
+/// and (m,j) += L_left^T (s,j). Then it adds the geometric blocks. (docs/notes/joints.md 2)
 ///
-/// A force element that comes to couple other nodes has all of that made anew. A slider may come to couple any elements
-/// of its line, but at a time it does few. All blocks have their places for good, and the reduced matrix only those
-/// that the sliders' active nodes reach. When a slider enters other elements its pattern follows: a new number in
-/// pattern(), no allocation here; but the solver analyses it anew, which allocates and takes the time of about three
-/// factorisations.
+/// When a force element couples other nodes, all of this is built again. A slider can couple any elements of its line,
+/// but only few at a time. All of its blocks have permanent places, but the reduced matrix contains only those of the
+/// sliders' active nodes. When a slider enters other elements, the pattern changes: pattern() returns a new number.
+/// This class allocates no memory for that. But the solver repeats its analysis, which allocates and takes as long as
+/// about three factorisations.
 class SparseTangent : public TangentBackend {
  public:
   SparseTangent(const Model& model, const DegreesOfFreedom& dof);
 
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
-  /// Other nodes than before: all blocks have other places then, which allocates.
+  /// If the nodes differ from those before, all blocks get new places, which allocates memory.
   void couple(int index, const int* nodes, int count) override;
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   FoldMaps& fold_maps(int) override { return maps_; }
@@ -49,7 +49,7 @@ class SparseTangent : public TangentBackend {
   const std::vector<int>& column_starts() const { return column_starts_; }
   const std::vector<int>& row_indices() const { return row_indices_; }
   const std::vector<double>& values() const { return reduced_values_; }
-  /// Changes with the pattern, in finish().
+  /// The number of the present pattern. finish() may change the pattern.
   int pattern() const { return pattern_; }
 
  private:
@@ -59,7 +59,7 @@ class SparseTangent : public TangentBackend {
   };
   struct ColumnFold {
     int source, to_released, to_master, rows;
-  };  // block indices; -1: none
+  };  // indices of blocks; -1: no block
   struct RowFold {
     int source, to_released, to_master, columns;
   };
@@ -70,8 +70,9 @@ class SparseTangent : public TangentBackend {
     int first_column_fold, last_column_fold, first_row_fold, last_row_fold;
     Geometric geometric;
   };
-  /// The like for a slave of many masters: the line's nodes, of which the maps name the active ones. Indices into
-  /// slide_blocks_, one entry per node of the line; -1 where two nodes are never active together.
+  /// The same for the slave of a slider, whose masters are the line's nodes. The maps name the active ones. Members are
+  /// indices into slide_blocks_, which has one entry per node of the line, or -1 for two nodes that are never active
+  /// together.
   struct SlideOperation {
     int source, to_released, to_masters, size;
   };
@@ -79,7 +80,7 @@ class SparseTangent : public TangentBackend {
     int first_column_fold = 0, last_column_fold = 0, first_row_fold = 0, last_row_fold = 0;
     int released_released = -1, released_masters = -1, masters_released = -1, masters_masters = -1;
   };
-  /// Blocks of a closure; -1 where the parent is the world.
+  /// Blocks of a closure; -1 if the parent is the world.
   struct ClosureBlocks {
     int parent_parent = -1, parent_child = -1, child_parent = -1, child_child = -1;
     int parent_multiplier = -1, child_multiplier = -1, multiplier_parent = -1, multiplier_child = -1;
@@ -88,7 +89,7 @@ class SparseTangent : public TangentBackend {
     int source, target, count;
   };
   struct MimicFold {
-    int first_column_fold, first_row_fold, last_row_fold, master;  // into mimic_folds_; block
+    int first_column_fold, first_row_fold, last_row_fold, master;  // indices into mimic_additions_; index of a block
   };
   struct Copy {
     std::size_t from;
@@ -116,7 +117,7 @@ class SparseTangent : public TangentBackend {
   const Model& model_;
   const DegreesOfFreedom& dof_;
   std::vector<Block> blocks_;
-  std::vector<int> element_places_, diagonal_places_;  // blocks, as TangentBackend's pointers
+  std::vector<int> element_places_, diagonal_places_;  // indices of blocks; see the pointers in TangentBackend
   std::vector<ColumnFold> column_folds_;
   std::vector<RowFold> row_folds_;
   std::vector<JointFold> joint_folds_;
@@ -124,16 +125,16 @@ class SparseTangent : public TangentBackend {
   std::vector<SlideFold> slide_folds_;  // per joint
   std::vector<int> slide_blocks_;
   std::vector<ClosureBlocks> closure_blocks_;  // per closure
-  /// Of a force element: nodes, and blocks of each with each, by rows.
+  /// The nodes of a force element, and the blocks of each node with each other one, row by row.
   struct Coupling {
     std::vector<int> nodes, blocks;
   };
   std::vector<Coupling> couplings_;
   std::vector<ScaledAddition> mimic_additions_;
   std::vector<MimicFold> mimic_folds_;
-  std::vector<std::vector<int>> column_blocks_;  // per variable: blocks of the reduced matrix, by rows
-  std::vector<NodeRange> active_;                // per joint that slides: nodes of its line that the pattern couples
-  std::vector<char> live_;                       // per block: what a tangent may write
+  std::vector<std::vector<int>> column_blocks_;  // per variable: blocks of the reduced matrix, sorted by rows
+  std::vector<NodeRange> active_;                // per joint: of a slider, the nodes of its line in the pattern
+  std::vector<char> live_;                       // per block: whether a tangent may write to it
   bool pattern_is_old_ = false;
   int pattern_ = 0;
   std::vector<double> values_, reduced_values_;
@@ -141,11 +142,11 @@ class SparseTangent : public TangentBackend {
   struct Span {
     std::size_t from, count;
   };
-  std::vector<Span> written_;  // of values_
+  std::vector<Span> written_;  // ranges of values_ to which a tangent may write
   std::vector<int> column_starts_, row_indices_;
   FoldMaps maps_;
   SlideMaps slide_maps_;
-  std::optional<LinearSolver> solver_;  // once something is to be solved
+  std::optional<LinearSolver> solver_;  // created at the first factorisation
 };
 
 }  // namespace flexarm

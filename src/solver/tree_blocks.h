@@ -1,5 +1,5 @@
 #pragma once
-/// The tangent of a step, in the form that the elimination along the tree reads.
+/// The tangent of a step, in the form that the elimination along the tree uses.
 
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace flexarm {
 
-/// Blocks and maps before anything is folded.
+/// Blocks and maps before any fold.
 struct TreeBlocks {
-  /// A row of a released coordinate that is replaced by `coefficients` in the joint's components from `first` on.
+  /// The row of a released component that is replaced, see TangentBackend::hold_row.
   struct HeldRow {
     int joint, component, first;
     ReleasedVector coefficients;
@@ -17,12 +17,12 @@ struct TreeBlocks {
 
   TreeBlocks(const Model& model, const DegreesOfFreedom& dof);
 
-  std::vector<double> diagonals, elements;  ///< 36 per variable and per block of two nodes
+  std::vector<double> diagonals, elements;  ///< 36 numbers per variable; 36 per pair of nodes of an element
   std::vector<FoldMaps> maps;               ///< per joint
-  std::vector<SlideMaps> slide_maps;        ///< per joint; empty but for sliders
-  /// Per closure, by rows: {child, parent, multipliers} with each other.
+  std::vector<SlideMaps> slide_maps;        ///< per joint; empty except for sliders
+  /// Per closure: the matrix of {child, parent, multipliers}.
   std::vector<Eigen::MatrixXd> closures;
-  std::vector<Eigen::MatrixXd> couplings;  ///< per force element: of the nodes that it may couple at a time
+  std::vector<Eigen::MatrixXd> couplings;  ///< per force element: the matrix of the nodes that it couples
   std::vector<MimicMap> mimics;
   std::vector<HeldRow> held;
 
@@ -31,8 +31,8 @@ struct TreeBlocks {
   const double* element(std::size_t block) const { return elements.data() + 36 * block; }
 };
 
-/// Replaces the row of a released component in a joint's maps and in its `own` block, by columns, before the joint is
-/// folded; see TangentBackend::hold_row.
+/// Replaces the row of a released component in a joint's maps and in its column-major block `own`. To be called before
+/// the joint is folded; see TangentBackend::hold_row.
 void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,
               const ReleasedVector& coefficients);
 

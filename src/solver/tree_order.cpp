@@ -36,8 +36,8 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
   update();
 }
 
-/// From the root to the leaves, each joint with the elements that hang on its slave; then turned round. Empty where
-/// that does not reach every node once.
+/// Lists the parts from the root to the leaves, each joint with the elements outboard of its slave; then reverses the
+/// list. Leaves the list empty if not every node is reached exactly once.
 void TreeOrder::order_parts() {
   std::vector<std::vector<TreePart>> outboard(model_.nodes.size());  // elements by their first node
   std::size_t parts_in_all = model_.joints.size();
@@ -64,7 +64,7 @@ void TreeOrder::order_parts() {
       parts_.push_back(part);
       for (int i = 1; i < part.node_count; ++i) {
         const int node = part.nodes[i];
-        if (dof_.slave_joint[node] >= 0) continue;  // goes on from its joint
+        if (dof_.slave_joint[node] >= 0) continue;  // its joint continues from here
         if (reached[node]) return parts_.clear();
         reached[node] = true;
         line.insert(line.end(), outboard[node].begin(), outboard[node].end());
@@ -97,8 +97,8 @@ void TreeOrder::place_variables() {
   }
 }
 
-/// A coordinate that others follow is complete once all of them are folded into it. No entry's master is the slave of
-/// an earlier one.
+/// A coordinate that others follow is complete when all of these are folded into it. The list of mimics is ordered such
+/// that no master is the slave of an earlier entry.
 void TreeOrder::place_mimics() {
   for (std::size_t i = 0; i < dof_.mimics.size(); ++i) {
     const auto& [slave, master, coordinate] = dof_.mimics[i];
@@ -125,8 +125,8 @@ int TreeOrder::last_part_of_line(const SlideLine& line) const {
   return last;
 }
 
-/// The branches of a loop have met once all parts of the way from one of its nodes to the other are eliminated, and the
-/// lines of the sliders on that way.
+/// Places closures. The two branches of a loop have met when all parts on the path between its two nodes are
+/// eliminated, and the lines of the sliders on this path.
 void TreeOrder::place_closures() {
   for (std::size_t k = 0; k < model_.closures.size(); ++k) {
     const LoopClosure& closure = model_.closures[k];
@@ -166,7 +166,7 @@ void TreeOrder::set_coupling(int coupling, const int* nodes, int count) {
   old_ = true;
 }
 
-/// Each where the first of its nodes is complete.
+/// Places each coupling in the part in which the first of its nodes is complete.
 void TreeOrder::place_couplings() {
   for (TreePart& part : parts_) part.first_coupling = -1;
   for (std::size_t k = couplings_.size(); k-- > 0;) {
@@ -184,7 +184,7 @@ void TreeOrder::update() {
   old_ = false;
 }
 
-/// The parts that couple a variable themselves, wherever the sliders are, per variable.
+/// Per variable: the parts that couple it, apart from windows of sliders.
 std::vector<std::vector<int>> TreeOrder::parts_of_variables() const {
   std::vector<std::vector<int>> parts(last_.size());
   for (std::size_t p = 0; p < parts_.size(); ++p)
@@ -195,24 +195,24 @@ std::vector<std::vector<int>> TreeOrder::parts_of_variables() const {
   return parts;
 }
 
-/// The part to which each may pass something on next, -1: none. As if every slider coupled its whole line: for any
-/// windows a part passes on to some of those that follow it here. (Liu, The role of elimination trees in sparse
-/// factorization, 1990)
+/// Per part: the next part to which it may pass something; -1: none. It is computed as if every slider coupled its
+/// whole line. For any windows, a part then passes only to parts on its path in this tree. (Liu, The role of
+/// elimination trees in sparse factorization, 1990)
 std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts) const {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     if (joint.kind != JointMapKind::Slide) continue;
     for (const int node : model_.slide_lines[joint.line].nodes) parts[node].push_back(completion_[joint.slave]);
   }
-  // A force element may couple any two nodes of its reach. It is enough that the tree has a path through all of them.
+  // A force element may couple any two nodes of its reach. For this, the tree must have a path through all of them.
   for (const auto& element : model_.force_elements) {
     std::vector<int> nodes = element->reach();
     std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return completion_[a] < completion_[b]; });
     for (std::size_t i = 1; i < nodes.size(); ++i) parts[nodes[i]].push_back(completion_[nodes[i - 1]]);
   }
-  std::vector<std::vector<int>> ending(parts_.size());  // variables that stay in borders up to a part
+  std::vector<std::vector<int>> ending(parts_.size());  // per part: variables that are in borders up to this part
   for (std::size_t v = 0; v < last_.size(); ++v)
-    if (last_[v] >= 0) ending[last_[v]].push_back(static_cast<int>(v));  // else it is held
+    if (last_[v] >= 0) ending[last_[v]].push_back(static_cast<int>(v));  // < 0: the variable is held
   std::vector<int> next(parts_.size(), -1), ancestor(parts_.size(), -1);
   for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
     for (const int variable : ending[p])
@@ -226,8 +226,9 @@ std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts
   return next;
 }
 
-/// A variable rides along from behind the part that couples it up to the one that eliminates it, a slider's window up
-/// to the last part of its line. Coordinates of a loop may have to wait for pivots as long as its multipliers.
+/// Counts riders, for any windows. A variable rides from the part that couples it to the one that eliminates it. The
+/// window of a slider may ride up to the last part of its line. Coordinates of a loop may wait for pivots as long as
+/// the multipliers of the loop.
 void TreeOrder::count_riders() {
   const std::vector<std::vector<int>> parts = parts_of_variables();
   const std::vector<int> next = elimination_tree(parts);
@@ -247,18 +248,18 @@ void TreeOrder::count_riders() {
     for (int p = completion_[joint.slave]; p >= 0 && p < last; p = next[p]) most_riders_[p] += scalars;
   }
   count_riders_of_couplings(next);
-  // Each variable rides once, however many force elements couple it.
+  // Each variable rides only once, even if several force elements couple it.
   int all = 0;
   for (const int size : dof_.size) all += 2 * size;
   for (int& riders : most_riders_) riders = std::min(riders, all);
   std::size_t variables = 0;
   for (const std::vector<int>& own : parts) variables += own.size();
   for (const auto& element : model_.force_elements) variables += element->most_nodes();
-  for (const int riders : most_riders_) variables += riders;  // a node has six, a coordinate one
+  for (const int riders : most_riders_) variables += riders;  // upper bound: a node counts as six, a coordinate as one
   border_.reserve(variables);
 }
 
-/// The nodes of a force element ride along from wherever it may be added up to the last part of its reach.
+/// The nodes of a force element may ride from any part of its reach to the last part of its reach.
 void TreeOrder::count_riders_of_couplings(const std::vector<int>& next) {
   std::vector<int> last_rider(parts_.size(), -1);
   for (std::size_t k = 0; k < model_.force_elements.size(); ++k) {
@@ -284,9 +285,9 @@ void TreeOrder::find_borders() {
   find_kept_interiors();
 }
 
-/// A part joins the front of the one that it passes on to where that has nothing else to eliminate or to leave: a
-/// slider and the elements of its window. No zeros come in, and nothing is handed over. (Fundamental supernodes: Liu,
-/// Ng and Peyton 1993)
+/// Lets parts share fronts. A part joins the front of the next part if that part has nothing else to eliminate or to
+/// leave, such as a slider and the elements of its window. The shared front has no additional zeros, and saves passing
+/// a remainder. (Fundamental supernodes: Liu, Ng and Peyton 1993)
 void TreeOrder::find_fronts() {
   const int count = static_cast<int>(parts_.size());
   for (int p = 0; p < count; ++p) {
@@ -309,7 +310,7 @@ bool TreeOrder::may_join(const TreePart& part, const TreePart& next) const {
   int folds = next.joint >= 0 ? 1 : 0;
   for (int p = part.first_member; p >= 0; p = parts_[p].next_member) folds += parts_[p].joint >= 0 ? 1 : 0;
   const int* rest = border(part);
-  const int first_multiplier = dof_.node_count + dof_.joint_count;  // they wait in fronts behind that of their closure
+  const int first_multiplier = dof_.node_count + dof_.joint_count;  // multipliers wait for fronts after their closure
   return folds <= 1 && next.complete.size() + next.border_count == static_cast<std::size_t>(part.border_count) &&
          std::all_of(rest, rest + part.border_count, [&](int variable) { return variable < first_multiplier; });
 }
@@ -324,7 +325,7 @@ void TreeOrder::find_kept_interiors() {
                                        [&](int node) { return receives_[node]; });
 }
 
-/// What a part couples, but for sliders' windows and what others pass on to it.
+/// Visits the variables that a part couples by itself, without windows of sliders and remainders of other parts.
 template <class Visit>
 void TreeOrder::for_each_of_its_own(const TreePart& part, const Visit& visit) const {
   for (const int e : part.elements) std::for_each_n(parts_[e].nodes.begin(), parts_[e].node_count, visit);

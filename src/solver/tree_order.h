@@ -1,6 +1,6 @@
 #pragma once
-/// The order in which a mechanism's tangent is eliminated, from the leaves to the root, and which variables each of its
-/// parts couples. (beyond.md 7, tree.md)
+/// Finds the order in which a mechanism's tangent is eliminated, from the leaves to the root, and the variables that
+/// each part of the mechanism couples. (docs/notes/beyond.md 7, docs/notes/tree.md)
 
 #include <array>
 #include <vector>
@@ -9,54 +9,56 @@
 
 namespace flexarm {
 
-/// A joint, which folds its slave, or an element, which eliminates its outboard nodes.
+/// A step of the elimination: a joint, whose slave is folded, or an element, whose outboard nodes are eliminated.
 struct TreePart {
   int joint = -1;  ///< -1: an element
   int node_count = 0;
-  std::array<int, 5> nodes{};  ///< of the element
+  std::array<int, 5> nodes{};  ///< of an element
   std::size_t first_block = 0;
 
-  // ---- what is added or complete here; indices of parts, closures, DegreesOfFreedom::mimics, variables
+  // ---- what is added or becomes complete here: indices of parts, closures, DegreesOfFreedom::mimics, variables
   std::vector<int> elements, closures, mimics, complete;
 
-  // ---- these follow the sliders
-  int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): what remains, eliminated by later parts
-  int first_child = -1, next_sibling = -1;  ///< parts that pass on what more than one node couples
-  int front = -1;                           ///< the part in whose front this one is eliminated: itself, mostly
-  int first_coupling = -1;                  ///< of those added here, see TreeOrder::next_coupling(); -1: none
-  int first_member = -1, next_member = -1;  ///< of those in its own front; behind this one in its front, -1: none
-  bool has_border = false;                  ///< more is coupled here than the part's own nodes and coordinates
-  bool passes_node = true;                  ///< what remains is a 6 x 6 block of the inboard node, or nothing
-  bool keeps_interior = false;              ///< an element without border, between whose ends nobody leaves anything
+  // ---- these depend on the windows of sliders and on the nodes of couplings
+  int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): variables that later parts eliminate
+  int first_child = -1, next_sibling = -1;  ///< list of parts that pass a remainder of more than one node to this part
+  int front = -1;                           ///< part in whose front this one is eliminated; usually itself
+  int first_coupling = -1;                  ///< list of couplings added here, see TreeOrder::next_coupling(); -1: none
+  int first_member = -1, next_member = -1;  ///< first part in its own front; next part in a shared front; -1: none
+  bool has_border = false;                  ///< it couples more than the nodes and coordinates of this part
+  bool passes_node = true;                  ///< the remainder is a 6 x 6 block of the inboard node, or nothing
+  bool keeps_interior = false;              ///< element without border; no part leaves a remainder between its ends
 };
 
-/// The parts in the order of their elimination, as a multifrontal method takes them: a variable is eliminated in the
-/// part in which its row is complete, and what the part leaves over its border goes to the first part that eliminates a
-/// variable of that border. In a tree of joints and elements every border is the inboard node alone. A slider puts its
-/// line's active nodes there, a closure its other node and its multipliers, a mimicking coordinate the one it follows,
-/// a beam whose far end another joint holds that joint's master, a force element its other nodes: until their own parts
-/// come, they ride along.
+/// All parts in the order of elimination, for a multifrontal method: each part assembles a dense matrix, its front, of
+/// the variables that it couples. A variable is eliminated in the part in which its row becomes complete. The remainder
+/// of a part couples the variables of its border, and goes to the first part that eliminates one of these. In a tree of
+/// joints and elements every border is just the inboard node. Other variables join a border and ride along, as riders,
+/// until their own part comes: for a slider the active nodes of its line, for a closure its other node and its
+/// multipliers, for a mimic coordinate the one that it follows, for a beam whose far end is held by another joint the
+/// master of that joint, for a force element its other nodes.
 class TreeOrder {
  public:
   TreeOrder(const Model& model, const DegreesOfFreedom& dof);
 
-  /// False if a node is no joint's slave and no chain of elements leads to it from one, or more than one does.
+  /// False if a node is no slave of a joint and not exactly one chain of elements leads to it from a slave.
   bool is_complete() const { return complete_; }
   const std::vector<TreePart>& parts() const { return parts_; }
-  /// Part in which a variable's row and column are complete, per variable.
+  /// Per variable: the part in which its row and column become complete.
   int completion(int variable) const { return completion_[variable]; }
-  /// Most scalars in a part's front that only earlier parts have brought there, or a slider, whatever the windows.
+  /// Upper bound, for any windows, of the number of riders in a part's front: scalars that are there only because an
+  /// earlier part or a slider couples them.
   int most_riders(int part) const { return most_riders_[part]; }
   const int* border(const TreePart& part) const { return border_.data() + part.first_border; }
-  /// Active nodes of the line on which a joint's slave slides.
+  /// Active nodes of the line of a slider.
   NodeRange window(int joint) const { return windows_[joint]; }
   void set_window(int joint, NodeRange window);
-  /// The nodes that a force element couples now, and the next one that is added in the same part; -1: none. Those of
-  /// less than two nodes are added nowhere.
+  /// The nodes that a force element couples now, and the next coupling in the same part; -1: none. Couplings of less
+  /// than two nodes belong to no part.
   const std::vector<int>& coupled_nodes(int coupling) const { return couplings_[coupling].nodes; }
   int next_coupling(int coupling) const { return couplings_[coupling].next; }
   void set_coupling(int coupling, const int* nodes, int count);
-  /// Finds the borders anew where a window or a coupling has changed. No allocation.
+  /// Finds the borders again if a window or a coupling has changed. Does not allocate memory.
   void update();
 
  private:
@@ -85,8 +87,8 @@ class TreeOrder {
   const DegreesOfFreedom& dof_;
   bool complete_ = false, old_ = true;
   std::vector<TreePart> parts_;
-  /// Per variable: part in which it is complete, and up to which it stays in borders: multipliers until both branches
-  /// of their loop have met, for only then is their elimination certain to succeed.
+  /// Per variable: the part in which it is complete, and the last part up to which it may be in borders. They differ
+  /// for multipliers, whose elimination is certain to succeed only when both branches of their loop have met.
   std::vector<int> completion_, last_;
   std::vector<NodeRange> windows_;  // per joint
   struct Coupling {
@@ -95,7 +97,7 @@ class TreeOrder {
   };
   std::vector<Coupling> couplings_;  // per force element
   std::vector<int> border_, visited_, most_riders_;
-  std::vector<char> receives_;  // per node: a part leaves its block there
+  std::vector<char> receives_;  // per node: whether a part adds its remainder to the node's block
 };
 
 }  // namespace flexarm

@@ -25,7 +25,8 @@ TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
 }
 
 double TreeTangent::cost_of_factors() const {
-  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"; with borders what makes least work (tree.md 4)
+  // Measured: bench_kernels --benchmark_filter=step_shares, counter "new/kept". With borders, this value minimises the
+  // work (docs/notes/tree.md 4).
   const std::vector<TreePart>& parts = order_.parts();
   return std::any_of(parts.begin(), parts.end(), [](const TreePart& part) { return part.has_border; }) ? 3.8 : 2.2;
 }
@@ -33,7 +34,7 @@ double TreeTangent::cost_of_factors() const {
 void TreeTangent::set_zero() {
   for (std::size_t v = 0; v < dof_.size.size(); ++v) std::fill_n(diagonal_blocks_[v], dof_.size[v] * dof_.size[v], 0.0);
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
-  // Most couple none of the nodes that they may.
+  // Most couplings couple fewer nodes than they may.
   for (std::size_t k = 0; k < blocks_.couplings.size(); ++k) {
     const Eigen::Index size = 6 * static_cast<Eigen::Index>(order_.coupled_nodes(static_cast<int>(k)).size());
     blocks_.couplings[k].topLeftCorner(size, size).setZero();
@@ -55,7 +56,7 @@ void TreeTangent::add_closure(int closure, int index, double multiplier, const C
   values.row(own).segment<6>(6) += maps.right.parent;
 }
 
-/// What a node has with itself is complete where the node is: the elimination need not know of it.
+/// Blocks of a node with itself go to the node's diagonal block, so that the elimination need not handle them.
 void TreeTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) {
   const std::vector<int>& nodes = order_.coupled_nodes(index);
   assert(blocks.cols() == blocks.rows() && blocks.rows() == 6 * static_cast<Eigen::Index>(nodes.size()));
@@ -64,7 +65,7 @@ void TreeTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd
   blocks_.couplings[index].topLeftCorner(blocks.rows(), blocks.cols()) += blocks;
 }
 
-/// Is left to the elimination, but for where sliders are.
+/// The elimination folds; here only the windows of sliders are set.
 void TreeTangent::fold(int joint) {
   if (model_.joints[joint].kind != JointMapKind::Slide) return;
   const SlideMaps& maps = blocks_.slide_maps[joint];
@@ -75,7 +76,7 @@ void TreeTangent::hold_row(int joint, int component, int first, const ReleasedVe
   blocks_.held.push_back({joint, component, first, coefficients});
 }
 
-/// In the maps and blocks of joints without a border; the others replace rows in their fronts.
+/// Replaces rows in the maps and blocks of joints without a border. For other joints, the fronts replace them.
 void TreeTangent::hold_rows() {
   for (const auto& [joint, component, first, coefficients] : blocks_.held) {
     const JointFront& front = joints_[joint];
@@ -87,13 +88,13 @@ void TreeTangent::hold_rows() {
 
 // ---------------------------------------------------------------- factors
 
-/// Of the elements that a part takes, before it does.
+/// Condenses the elements that a part adds to its front.
 void TreeTangent::condense(const TreePart& part, double* values) {
   for (const int element : part.elements)
     elements_.set_condensed(element, condensation_->prepare(element, blocks_, values));
 }
 
-/// With a right-hand side, whose values stand ready, its forward elimination, too.
+/// `b`: null, or a right-hand side, already in `values_`, which gets its forward elimination as well.
 bool TreeTangent::eliminate(const Eigen::VectorXd* b) {
   order_.update();
   hold_rows();
@@ -103,7 +104,7 @@ bool TreeTangent::eliminate(const Eigen::VectorXd* b) {
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int j = parts[p].joint;
     if (condensation_) condense(parts[p], b ? values_.data() : nullptr);
-    const bool is_element = !parts[p].has_border && j < 0;  // takes the right-hand side along
+    const bool is_element = !parts[p].has_border && j < 0;  // it handles the right-hand side in the same call
     const bool done = parts[p].has_border ? bordered_.eliminate(p)
                       : is_element        ? elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data(),
                                                          b ? values_.data() : nullptr)

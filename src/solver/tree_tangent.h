@@ -1,5 +1,6 @@
 #pragma once
-/// Block elimination of a mechanism's tangent along its tree, from the leaves to the root, in O(n). (tree.md)
+/// Block elimination of a mechanism's tangent along its tree, from the leaves to the root, in O(n).
+/// (docs/notes/tree.md)
 
 #include <vector>
 
@@ -15,17 +16,19 @@ namespace flexarm {
 
 /// Solves with the tangent of a mechanism of beams and joints.
 ///
-/// Every element is a dense front of its nodes; elimination of all but the inboard one leaves a 6 x 6 Schur complement
-/// there (ElementFront). A joint takes what its whole outboard part has left at the slave over to its master, less what
-/// its released coordinates give way (JointFront): the articulated-body algorithm with the tangent in the place of the
-/// inertia. No matrix of the whole is ever formed, so a chain of joints costs no more than its length. Where sliders,
-/// loops or mimics couple more than that, the parts concerned are fronts with a border (BorderedElimination).
+/// Each element is a dense front of its nodes. Eliminating all but the inboard node leaves a 6 x 6 Schur complement
+/// there (ElementFront). A joint transfers the remainder of everything outboard from its slave to its master, and
+/// eliminates its released coordinates (JointFront). This is the articulated-body algorithm with the tangent in place
+/// of the inertia. The whole matrix is never formed, so that the cost of a chain of joints is proportional to its
+/// length. Where sliders, loops or mimics couple more variables, the parts concerned are fronts with a border
+/// (BorderedElimination).
 class TreeTangent : public TangentBackend {
  public:
-  /// True if every node hangs on the root by one chain of joints and elements, which may meet in loops.
+  /// Whether every node is connected to the root by exactly one chain of joints and elements. The chains may form
+  /// loops.
   static bool suits(const Model& model, const DegreesOfFreedom& dof);
 
-  /// Of a model that suits; both must outlive the solver.
+  /// The model must be one that suits(). Both arguments must outlive this object.
   TreeTangent(const Model& model, const DegreesOfFreedom& dof);
 
   void set_zero() override;
@@ -59,12 +62,12 @@ class TreeTangent : public TangentBackend {
   const DegreesOfFreedom& dof_;
   TreeBlocks blocks_;
   TreeOrder order_;
-  std::unique_ptr<InteriorCondensation> condensation_;  // null unless beams leave their packs there
+  std::unique_ptr<InteriorCondensation> condensation_;  // null unless condense_interiors() was called
   ElementElimination<6> elements_;
   BorderedElimination bordered_;
   std::vector<JointFront> joints_;  // in the model's order
   int singular_variable_ = -1;
-  std::vector<double> values_;  // per scalar: right-hand side, solution
+  std::vector<double> values_;  // per scalar: right-hand side, then solution
 };
 
 }  // namespace flexarm

@@ -33,7 +33,7 @@ std::string CommandReader::read_set_points(const sensor_msgs::JointState& messag
   for (const std::string& name : message.name) {
     const std::optional<std::size_t> coordinate = shown_.find_coordinate(name);
     if (!coordinate || !shown_.has_servo(*coordinate)) {
-      values.push_back(0);  // whatever it is: the command is refused for the name
+      values.push_back(0);  // any value: read() refuses the command because of the name
       continue;
     }
     const ServoMode mode = shown_.servo_mode(*coordinate);
@@ -68,13 +68,14 @@ std::string CommandReader::read(Commanded quantity, const std::vector<std::strin
   commands.clear();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::optional<std::size_t> coordinate = shown_.find_coordinate(names[i]);
-    if (!coordinate) return "there is no joint coordinate '" + names[i] + "'";
+    if (!coordinate) return unknown_coordinate(shown_, names[i]);
     if (!std::isfinite(values[i])) return "the " + what + " of '" + names[i] + "' is not finite";
     const std::string fault = find_fault(quantity, *coordinate);
     if (!fault.empty()) return fault;
     const auto is_same = [&](const Command& other) { return other.coordinate == *coordinate; };
     if (std::any_of(commands.begin(), commands.end(), is_same)) return "'" + names[i] + "' is named twice";
-    // A position's servo holds its last set point; one of velocity or effort that hears nothing any more stops.
+    // When a command expires, a servo in mode position keeps its last set point; one in another mode gets the set point
+    // zero.
     const bool holds = quantity == Commanded::SetPoint && shown_.servo_mode(*coordinate) == ServoMode::Position;
     commands.push_back({quantity, *coordinate, values[i], holds ? Command::kForEver : lifetime});
   }
@@ -90,7 +91,7 @@ std::string read_trajectory_joints(const Simulation& shown, const std::vector<st
                                    std::vector<std::size_t>& joints) {
   for (const std::string& name : names) {
     const std::optional<std::size_t> joint = shown.find_coordinate(name);
-    if (!joint) return "there is no joint coordinate '" + name + "'";
+    if (!joint) return unknown_coordinate(shown, name);
     if (const std::string refusal = refusal_of_set_points(shown, *joint); !refusal.empty()) return refusal;
     if (shown.servo_mode(*joint) != ServoMode::Position) return "the servo of '" + name + "' is not in mode 'position'";
     joints.push_back(*joint);

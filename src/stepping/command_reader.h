@@ -1,5 +1,5 @@
 #pragma once
-/// What messages command. Knows no node: replays read recorded ones.
+/// Converts ROS messages into commands for joint coordinates. Independent of the node, so that replays can use it too.
 
 #include <flexarm/JointForceCommand.h>
 #include <sensor_msgs/JointState.h>
@@ -15,21 +15,22 @@
 
 namespace flexarm::node {
 
-/// Reads each message whole. All functions return why it is refused, or nothing.
+/// Reads messages. If any part of a message is wrong, the whole message is refused. All functions return the reason why
+/// a message is refused, or an empty string.
 class CommandReader {
  public:
-  /// @param shown    whose coordinates are commanded, with the modes that their servos have now
-  /// @param timeout  a command expires after it, unless it names a duration [s]; 0: never
+  /// @param shown    the simulation whose coordinates are commanded, with the present modes of its servos
+  /// @param timeout  lifetime of commands without a duration [s]; 0: unlimited
   CommandReader(const Simulation& shown, double timeout) : shown_(shown), timeout_(timeout) {}
 
   std::string read_force_command(const JointForceCommand& message, std::vector<Command>& commands) const;
-  /// Of joint_command: efforts, or else set points.
+  /// For joint_command: reads efforts; if the message has none, set points.
   std::string read_joint_command(const sensor_msgs::JointState& message, std::vector<Command>& commands) const;
   std::string read_set_points(const sensor_msgs::JointState& message, std::vector<Command>& commands) const;
   std::string read_one(Commanded quantity, const std::string& name, double value, std::vector<Command>& commands) const;
 
  private:
-  /// @param duration  [s]; 0: the timeout counts
+  /// @param duration  lifetime [s]; 0: the timeout applies
   std::string read(Commanded quantity, const std::vector<std::string>& names, const std::vector<double>& values,
                    double duration, std::vector<Command>& commands) const;
   std::string find_fault(Commanded quantity, std::size_t coordinate) const;
@@ -38,11 +39,11 @@ class CommandReader {
   double timeout_;
 };
 
-/// The coordinates that a trajectory names. @returns why they cannot follow one, or nothing
+/// Finds the coordinates of a trajectory by name. @returns why they cannot follow a trajectory, or an empty string
 std::string read_trajectory_joints(const Simulation& shown, const std::vector<std::string>& names,
                                    std::vector<std::size_t>& joints);
 
-/// The points of a message; its start is left open.
+/// Converts the points of a message. Leaves the start time at zero.
 JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints);
 
 }  // namespace flexarm::node

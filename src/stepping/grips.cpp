@@ -12,7 +12,7 @@ struct PositionGains {
   double kp = 0, kd = 0, ki = 0;
 };
 
-/// Of the coordinate's servo in mode position, as they are in force; zeros where it has none.
+/// The present gains of a coordinate's servo in mode position; zeros if there is none.
 PositionGains position_gains(const Simulation& simulation, std::size_t joint) {
   const std::string& name = simulation.coordinate_names()[joint];
   for (const scene::ServoDescription& servo : simulation.scene().servos) {
@@ -24,12 +24,12 @@ PositionGains position_gains(const Simulation& simulation, std::size_t joint) {
   return {};
 }
 
-/// The set point nearest to `wanted` with which the servo gives no more than `max_effort` where the joint is now.
+/// The set point nearest to `wanted` for which the servo's effort at the present position is at most `max_effort`.
 double limited_set_point(const Simulation& simulation, std::size_t joint, double wanted, double max_effort) {
   const PositionGains gains = position_gains(simulation, joint);
   if (max_effort <= 0 || gains.kp <= 0) return wanted;
   const double position = simulation.position(joint);
-  // What the integral gives is what is left of the last step's effort. It follows, so that it does not wind up either.
+  // The integral part of the effort is the rest of the last step's effort. Subtracting it also prevents windup.
   double integral = 0;
   if (gains.ki > 0)
     integral = simulation.effort(joint) - gains.kp * (simulation.set_point(joint) - position) +

@@ -1,5 +1,5 @@
 #pragma once
-/// Joints that grip: their servos go to a position with a limited effort.
+/// Joints that grip: their servos move to a position with a limited effort, as in a gripper action.
 
 #include <cstddef>
 #include <string>
@@ -9,22 +9,23 @@
 
 namespace flexarm::node {
 
-/// Gives set points to servos of mode position. One whose effort is limited is asked for no more than its gain kp makes
-/// that effort of: where the joint is held up, the servo gives just the limit. What kd adds is against the motion.
+/// Gives set points to servos in mode position. If the effort is limited, the set point is kept so close to the present
+/// position that kp times the difference stays within the limit. A blocked joint then pushes with exactly the limit.
+/// The part of kd only resists the motion.
 class Grips {
  public:
-  /// Of what joints are to do from the next step on. @param max_effort  [N m or N]; 0: what the servo gives
+  /// Lets a joint grip from the next step on. @param max_effort  [N m or N]; 0: not limited
   void close(std::size_t joint, double position, double max_effort);
-  /// Leaves a joint to others.
+  /// Stops commanding a joint.
   void release(std::size_t joint);
   void release_all() { grips_.clear(); }
-  /// Leaves joints from this one on.
+  /// Stops commanding all joints with this index or a higher one.
   void release_from(std::size_t joint);
   bool holds(std::size_t joint) const;
-  /// The set points of the next step.
+  /// Gives the set points for the next step.
   void command(Simulation& simulation);
 
-  /// Why the effort of the coordinate's servo cannot be limited, or nothing.
+  /// Why the effort of the coordinate's servo cannot be limited, or an empty string.
   static std::string refusal_of_limit(const Simulation& simulation, std::size_t joint);
 
  private:

@@ -12,7 +12,7 @@ Pacer::Pacer(double step, double real_time_factor, double max_catch_up) {
 void Pacer::set_pace(double step, double real_time_factor, double max_catch_up) {
   step_ = step;
   real_time_factor_ = real_time_factor;
-  // Two steps: a backlog just below one step plus a tick's worth must not count as an overrun.
+  // At least two steps: a backlog of nearly one step, plus one more tick, must not count as an overrun.
   max_backlog_ = std::max(real_time_factor * max_catch_up, 2 * step);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A semaphore between two threads.
+/// A semaphore for two threads, based on POSIX semaphores.
 
 #include <semaphore.h>
 
@@ -9,7 +9,7 @@
 
 namespace flexarm::node {
 
-/// The giving thread never waits.
+/// give() never waits.
 class Semaphore {
  public:
   Semaphore() { sem_init(&semaphore_, 0, 0); }
@@ -20,9 +20,9 @@ class Semaphore {
   void give() { sem_post(&semaphore_); }
   void take() {
     while (sem_wait(&semaphore_) != 0) {
-    }  // a signal's handler has run
+    }  // sem_wait() was interrupted by a signal
   }
-  /// Waits until then at most.
+  /// Waits until `time` at most.
   void take_until(std::chrono::steady_clock::time_point time) {
     const auto since_boot = std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
     constexpr std::int64_t kSecond = 1000000000;

@@ -1,18 +1,18 @@
 #pragma once
-/// Simulated time that no reset sets back.
+/// Simulated time that resets of the simulation do not set back.
 
 #include <cstdint>
 
 namespace flexarm::node {
 
-/// Counts steps, so that no rounding accumulates; their size may change.
+/// Counts steps, so that rounding errors do not accumulate. The step size may change.
 class SteppedTime {
  public:
   /// @param step  [s]
   explicit SteppedTime(double step) : step_(step) {}
 
   void advance(std::uint64_t steps = 1) { steps_ += steps; }
-  /// Of the steps to come [s].
+  /// Sets the size of future steps [s].
   void set_step(double step) {
     begin_ = seconds();
     steps_ = 0;

@@ -16,14 +16,14 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// A thread that waits checks again after this time; the thread that it waits for may wake it sooner.
+/// A waiting thread checks its conditions again after this time, unless the other thread wakes it earlier.
 constexpr std::chrono::milliseconds kLongestWait{100};
 constexpr std::chrono::microseconds kWaitForRoom{100};
 constexpr std::size_t kCommands = 4096;
-/// Reports that may wait to be published: this many steps may pass while the publishers are busy. A state has some 17
-/// numbers for each unknown.
+/// Number of step reports that can wait to be published while the publishers are busy, from the memory that they need.
+/// A state has about 17 numbers per unknown.
 constexpr std::size_t kFewestReports = 64, kMostReports = 1024, kBytesOfReports = 32 << 20, kBytesPerUnknown = 136;
-/// Above ordinary real-time programs' default, below the kernel's own threads.
+/// Scheduling priority: above the usual one of real-time programs, below the kernel's own threads.
 constexpr int kPriority = 40;
 
 std::size_t report_count(const Simulation& simulation) {
@@ -52,7 +52,7 @@ SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::fun
       notify_(std::move(notify)) {
   make_room();
   begin_companion();
-  thread_ = std::thread([this] { loop(); });  // what throws has done so: a thread must not outlive its members
+  thread_ = std::thread([this] { loop(); });  // last: if anything above throws, no thread is running
   halted_.take();
 }
 
@@ -116,7 +116,7 @@ std::string SteppingThread::make_real_time() {
   return refused;
 }
 
-// ---------------------------------------------------------------- while it is halted, or by the thread itself
+// ---------------------------------------------------------------- while the thread is halted, or called by it
 
 void SteppingThread::make_room() {
   Simulation ahead = simulation_.copy();
@@ -135,7 +135,7 @@ void SteppingThread::go_on_with_scene(Simulation simulation, bool keeps_places) 
   const std::vector<std::string> names_before = simulation_.coordinate_names();
   const std::size_t coordinates = simulation.coordinate_names().size();
   if (!keeps_places)
-    while (!commands_.empty()) commands_.pop();  // of steps to come, in lock step
+    while (!commands_.empty()) commands_.pop();  // in lock step, these are commands for later steps
   go_on_with(std::move(simulation));
   timed_commands_.renumber(names_before);
   trajectories_.resize(keeps_places ? coordinates : 0);
@@ -165,7 +165,7 @@ void SteppingThread::begin_companion() {
   if (pace_.error_window <= 0) return;
   try {
     companion_.emplace(simulation_, pace_.error_window);
-  } catch (const std::invalid_argument&) {  // see estimates_errors()
+  } catch (const std::invalid_argument&) {  // no companion is possible, see estimates_errors()
   }
 }
 
@@ -186,7 +186,7 @@ bool SteppingThread::make_step(std::optional<double> lateness) {
     time_.advance();
   }
   has_failed_ = !result.converged && !(pace_.cuts_late_steps && result.reason == StepResult::Reason::OutOfTime);
-  // The last place is kept for the report of a failure, which must not be lost.
+  // The last free entry is reserved for the report of a failure, which must not be lost.
   if (!reports_.has_room(has_failed_ ? 1 : 2)) return !has_failed_;
   StepReport& report = reports_.free_entry();
   simulation_.snapshot(report.state);
@@ -239,7 +239,7 @@ void SteppingThread::forget_commands() {
 // ---------------------------------------------------------------- the thread
 
 void SteppingThread::loop() {
-  prctl(PR_SET_TIMERSLACK, 1);  // ns: it is woken when it asked for it, not together with others
+  prctl(PR_SET_TIMERSLACK, 1);  // [ns] wake up exactly on time, instead of together with other timers
   while (true) {
     if (!may_run_.load()) {
       halted_.give();

@@ -23,122 +23,126 @@
 
 namespace flexarm::node {
 
+/// How fast the simulation is stepped.
 struct Pace {
-  double real_time_factor = 1;   ///< simulated per wall time; 0: as fast as possible
-  double max_catch_up = 0.1;     ///< backlog that is made up before steps are dropped, wall time [s]
-  bool lock_step = false;        ///< each step waits for the message that commands it, whatever the wall clock says
-  bool cuts_late_steps = false;  ///< one that runs out of time (SimulationOptions::recovery_wall_time) has not failed
-  double error_window = 0;       ///< over which a Companion estimates the error of steps [s]; 0: none does
+  double real_time_factor = 1;   ///< simulated time / wall time; 0: as fast as possible
+  double max_catch_up = 0.1;     ///< largest backlog that is caught up, in wall time [s]; the rest is dropped
+  bool lock_step = false;        ///< each step waits for a message that commands it, independent of wall time
+  bool cuts_late_steps = false;  ///< a step that ran out of time (recovery_wall_time) does not count as failed
+  double error_window = 0;       ///< window of the Companion that estimates errors [s]; 0: no estimate
 
-  /// How much simulated time passes while stamps go on by a second: one, too, where nothing ties the one to the other.
-  /// `are_simulated`: they are simulated times themselves.
+  /// Simulated time per second of message stamps. It is 1 if stamps are simulated times themselves (`are_simulated`),
+  /// or if simulated time has no fixed ratio to wall time.
   double per_stamp(bool are_simulated) const {
     return are_simulated || lock_step || real_time_factor == 0 ? 1 : real_time_factor;
   }
 };
 
-/// The outcome of a step.
+/// The outcome of a step, for publishers.
 struct StepReport {
-  Snapshot state;  ///< after it, or after the last good sub-step
+  Snapshot state;  ///< after the step, or after its last good sub-step
   StepResult result;
   bool has_failed = false;
-  std::uint64_t steps = 0;     ///< that were done since the beginning
-  double time = 0;             ///< simulated, since then; a reset does not set it back [s]
-  std::uint64_t overruns = 0;  ///< dropped since then
-  std::optional<std::chrono::steady_clock::time_point> due;  ///< by the wall clock, if it keeps pace with that,
-  double lateness = 0;                                       ///< and began so much later [s]
-  double duration = 0;                                       ///< by the wall clock [s]
+  std::uint64_t steps = 0;     ///< number of steps since the beginning
+  double time = 0;             ///< simulated time since the beginning, which resets do not set back [s]
+  std::uint64_t overruns = 0;  ///< steps dropped since the beginning
+  std::optional<std::chrono::steady_clock::time_point> due;  ///< when the step was due; empty if not paced by the clock
+  double lateness = 0;                                       ///< delay of its beginning [s]
+  double duration = 0;                                       ///< wall time that it took [s]
 };
 
-/// While it runs, it steps and reports. While it is halted, the simulation belongs to the thread that halted it, the
-/// one that spins. Neither waits for the other: commands go one way through a ring, reports the other way.
+/// While it runs, this thread steps and reports. While it is halted, the thread that halted it (the one that spins ROS
+/// callbacks) may access the simulation. The two threads exchange commands and reports through rings, without waiting
+/// for each other.
 class SteppingThread {
  public:
-  /// Halted. @param notify  is called by this thread after each report
+  /// Creates a halted thread. @param notify  called by this thread after each report
   SteppingThread(Simulation simulation, const Pace& pace, std::function<void()> notify);
   ~SteppingThread();
   SteppingThread(const SteppingThread&) = delete;
   SteppingThread& operator=(const SteppingThread&) = delete;
 
-  // ---- for the thread that spins
-  /// @param anew  time that has passed meanwhile does not count
+  // ---- for the thread that spins ROS callbacks
+  /// Continues stepping. @param anew  whether to ignore the wall time since the halt
   void run(bool anew);
-  /// Returns at the end of the step that is under way.
+  /// Halts the thread. Returns at the end of the present step.
   void halt();
-  /// A report tells that a step has failed, after which the thread is halted.
+  /// To be called for a report with `has_failed`. The thread has halted after such a report.
   void note_failure();
-  /// Halts for as long as `act(simulation)` takes, if it runs.
+  /// Calls `act(simulation)` while the thread is halted; then continues if the thread was running.
   template <class Act>
   void between_steps(const Act& act);
-  /// A message acts from the next step on; in lock step, each makes one. @returns false if too many wait already
+  /// Hands over a message whose commands act from the next step on; in lock step, each message causes one step.
+  /// @returns false if too many commands are waiting
   bool command(const std::vector<Command>& message);
-  /// In lock step, makes one step in which nothing new is commanded. @returns false as command()
+  /// In lock step, causes one step without new commands. @returns as command()
   bool command_step();
-  /// The outcomes of steps, in order. If the caller is too slow and the clock does not wait, some are lost.
+  /// The reports of steps, in order. If the caller reads them too slowly, some are lost, unless steps wait for it.
   SpscRing<StepReport>& reports() { return reports_; }
   /// Gives the thread real-time priority, and locks the memory of the process.
-  /// @returns what the system refuses; empty: nothing
+  /// @returns the operations that the system refused, with reasons; empty if none
   std::string make_real_time();
 
-  // ---- for a caller that has halted it and has taken all reports
-  /// Goes on with another simulation of the same mechanism; commands stay in force.
+  // ---- for a caller that has halted the thread and taken all reports
+  /// Continues with another simulation of the same mechanism. Commands stay in force.
   void go_on_with(Simulation simulation);
-  /// Goes on with that of a scene in which links came or went. Commands stay in force, but for those of what went, and
-  /// pulls; if coordinates and links do not keep their places, trajectories, grips and wrenches are over, too.
+  /// Continues with the simulation of a scene in which links were added or removed. Commands stay in force, except
+  /// those for removed coordinates, and pulls. If coordinates or links change their indices, all trajectories, grips
+  /// and wrenches end, too.
   void go_on_with_scene(Simulation simulation, bool keeps_places);
-  /// Begins with the simulation of another scene; all commands are forgotten.
+  /// Starts with the simulation of another scene. All commands are forgotten.
   void begin_with(Simulation simulation);
   void set_pace(const Pace& pace);
 
-  // ---- for a caller that has halted it
+  // ---- for a caller that has halted the thread
   Simulation& simulation() { return simulation_; }
   WrenchSchedule& wrenches() { return wrenches_; }
-  /// Its times are those of time(). Joints whose set points are commanded leave it.
+  /// Times in trajectories are those of time(). A command for a joint's set point ends its trajectory.
   TrajectoryFollower& trajectories() { return trajectories_; }
-  /// So do joints that grip.
+  /// A command for a joint's set point ends its grip.
   Grips& grips() { return grips_; }
-  /// Whether a Companion does: it cannot where servos are sampled in every step, or in an odd number of them.
+  /// Whether a Companion estimates errors. It cannot if servos are sampled in every step, or in an odd number of steps.
   bool estimates_errors() const { return companion_.has_value(); }
-  /// Simulated, since the beginning; a reset does not set it back [s].
+  /// Simulated time since the beginning, which resets do not set back [s].
   double time() const { return time_.seconds(); }
-  /// One step and what belongs to it. @returns false if it failed
+  /// Does one step, with commands and report. @returns false if it failed
   bool advance();
-  /// What was commanded acts now, but in lock step, where it is for the steps to come.
+  /// Applies waiting commands now; not in lock step, where they belong to later steps.
   void take_commands();
-  /// Commands that wait are dropped, and none expires any more.
+  /// Drops waiting commands. Those in force no longer expire.
   void forget_commands();
-  /// What was commanded as the set point of a coordinate does not expire.
+  /// The commanded set point of this coordinate no longer expires.
   void forget_set_point(std::size_t coordinate) { timed_commands_.forget_set_point(coordinate); }
 
  private:
   void loop();
-  /// True once the next step may begin; else waits for a while.
+  /// Returns true if the next step may begin. Otherwise waits for a while and returns false.
   bool wait_for_step();
-  /// `lateness`: of a step that keeps pace with the wall clock [s].
+  /// `lateness`: of a step that is paced by the wall clock [s].
   bool make_step(std::optional<double> lateness);
   void take_message();
-  /// Reports get room for states as they are after a step, so that the thread need not allocate it.
+  /// Allocates the memory of all reports in advance, with the size of a state after a step.
   void make_room();
   void begin_companion();
-  /// Set points of the next step.
+  /// Gives the set points of trajectories and grips for the next step.
   void follow_trajectories();
 
   Simulation simulation_;
-  std::optional<Companion> companion_;  ///< of the simulation
+  std::optional<Companion> companion_;  ///< estimates the error of simulation_
   TimedCommands timed_commands_;
   WrenchSchedule wrenches_;
   TrajectoryFollower trajectories_;
   Grips grips_;
   Pace pace_;
   Pacer pacer_;
-  std::chrono::steady_clock::time_point last_look_;  ///< at the clock
+  std::chrono::steady_clock::time_point last_look_;  ///< when the clock was read last
   std::uint64_t steps_ = 0;
   SteppedTime time_;
-  bool has_failed_ = false;  ///< the last step
+  bool has_failed_ = false;  ///< whether the last step failed
   SpscRing<StepReport> reports_;
   SpscRing<Command> commands_;
   std::function<void()> notify_;
-  bool is_running_ = false;  ///< as the thread that spins knows it
+  bool is_running_ = false;  ///< only used by the thread that spins
   std::atomic<bool> may_run_{false}, is_over_{false};
   Semaphore wake_, halted_, start_;
   std::thread thread_;

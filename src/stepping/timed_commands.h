@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers that topics command to joint coordinates for some time.
+/// Commands for joint coordinates that expire after some time.
 
 #include <array>
 #include <cstddef>
@@ -13,38 +13,38 @@ namespace flexarm::node {
 
 enum class Commanded : std::size_t { Effort, SetPoint, Nothing };
 
-/// What the thread that spins hands to the one that steps.
+/// A command for one coordinate, handed from the thread that spins ROS callbacks to the stepping thread.
 struct Command {
   static constexpr double kForEver = std::numeric_limits<double>::infinity();
   Commanded quantity = Commanded::Effort;
   std::size_t coordinate = 0;
   double value = 0;
-  double lifetime = kForEver;  ///< simulated, from the beginning of the step in which it acts first [s]
-  bool ends_message = true;    ///< commands of one message act from the same step on
+  double lifetime = kForEver;  ///< simulated time, from the beginning of the first step in which it acts [s]
+  bool ends_message = true;    ///< last command of its message; all commands of a message act from the same step on
 };
 
-/// Gives commands to a simulation. What expires becomes zero, in simulated time.
+/// Gives commands to a simulation. A command that expires, in simulated time, is replaced by zero.
 class TimedCommands {
  public:
   explicit TimedCommands(Simulation& simulation);
 
   void apply(const Command& command);
-  /// Before each step. `time`: simulated time that no reset sets back [s].
+  /// To be called before each step. `time`: simulated time that resets do not set back [s].
   void expire(double time);
-  /// Nothing expires any more; of another scene, too, that the simulation may be of by now.
+  /// From now on no command expires. The simulation may have become that of another scene.
   void forget();
-  /// The simulation is of another scene now: of coordinates of the same name commands go on.
+  /// To be called when the simulation has become that of another scene. Commands follow their coordinates by name.
   void renumber(const std::vector<std::string>& names_before);
-  /// The set point of a coordinate does not.
+  /// From now on the set point of this coordinate does not expire.
   void forget_set_point(std::size_t coordinate);
 
  private:
   void give(Commanded quantity, std::size_t coordinate, double value);
 
   Simulation& simulation_;
-  double time_ = 0;                            ///< simulated, see expire()
-  std::array<std::vector<double>, 2> expiry_;  ///< per quantity and coordinate, simulated time [s]; infinite: never
-  double next_expiry_ = Command::kForEver;     ///< no later than the earliest of expiry_
+  double time_ = 0;                            ///< simulated time, see expire()
+  std::array<std::vector<double>, 2> expiry_;  ///< per quantity and coordinate: simulated time [s]; infinite: never
+  double next_expiry_ = Command::kForEver;     ///< lower bound of all times in expiry_
 };
 
 }  // namespace flexarm::node

@@ -103,7 +103,7 @@ std::string TrajectoryFollower::find_fault(const JointTrajectory& trajectory) co
     const std::string name = "point " + std::to_string(i + 1);
     if (const std::string fault = fault_of_point(point, trajectory.joints.size()); !fault.empty())
       return name + " " + fault;
-    if (!(point.time >= 0)) return "the time of " + name + " is no number from 0 on";
+    if (!(point.time >= 0)) return "the time of " + name + " is not a number >= 0";
     if (i > 0 && !(point.time > trajectory.points[i - 1].time)) return name + " is not later than the one before";
   }
   return {};
@@ -122,7 +122,7 @@ void TrajectoryFollower::follow(const JointTrajectory& trajectory, double now, c
     joint.follows = true;
     double time = begin;
     JointPoint from = joint.way.cut(begin);
-    Order order_before = Order::Acceleration;  // all is known of where a joint is
+    Order order_before = Order::Acceleration;  // position, velocity and acceleration at the beginning are known
     for (const JointTrajectory::Point& point : trajectory.points) {
       const double arrival = trajectory.start + point.time;
       if (arrival <= begin) continue;

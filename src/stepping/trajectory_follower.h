@@ -1,5 +1,5 @@
 #pragma once
-/// Set points of joints that follow trajectories. Knows neither ROS nor the simulation.
+/// Computes set points of joints that follow trajectories. Uses neither ROS nor the simulation.
 
 #include <array>
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace flexarm::node {
 
-/// Times that are sums are equal if they differ by less than this [s].
+/// Times, which are sums, count as equal if they differ by less than this [s].
 constexpr double kTimeRoundOff = 1e-9;
 
-/// Of a joint at an instant [rad or m; over s; over s^2].
+/// Motion of a joint at an instant [rad or m; per s; per s^2].
 struct JointPoint {
   double position = 0, velocity = 0, acceleration = 0;
 };
 
-/// Points that joints are to pass, as trajectory_msgs/JointTrajectory has them.
+/// Points through which joints move, as in trajectory_msgs/JointTrajectory.
 struct JointTrajectory {
   struct Point {
     double time = 0;                                           ///< from the start [s]
@@ -27,49 +27,50 @@ struct JointTrajectory {
   std::vector<Point> points;
 };
 
-/// A joint's way as polynomials of time, one after the other; it rests before them and after them.
+/// The path of one joint over time: consecutive polynomials. The joint rests before the first and after the last one.
 class JointSpline {
  public:
   explicit JointSpline(double position) : rest_(position) {}
 
-  /// Forgets what would come after `end` [s]; where the joint is then.
+  /// Removes everything after `end` [s]. Returns the joint's motion at `end`.
   JointPoint cut(double end);
-  /// Goes on by a polynomial from `from` at `begin` to `to` at `end`: of degree 5 with accelerations, 3 with velocities
-  /// alone, else 1.
+  /// Which values a polynomial matches at both ends: positions (degree 1), velocities as well (3), accelerations as
+  /// well (5).
   enum class Order { Position, Velocity, Acceleration };
+  /// Appends a polynomial from `from` at time `begin` to `to` at time `end`.
   void add(double begin, const JointPoint& from, double end, const JointPoint& to, Order order);
-  /// Goes on at a constant deceleration from `from` to a stand.
+  /// Appends a constant deceleration from `from` to rest.
   void add_stop(double begin, const JointPoint& from, double duration);
   JointPoint at(double time) const;
-  /// Where it rests from then on [s].
+  /// Time from which the joint rests [s].
   double end() const { return pieces_.empty() ? 0 : pieces_.back().begin + pieces_.back().duration; }
   bool is_moving(double time) const { return !pieces_.empty() && time < end(); }
 
  private:
   struct Piece {
     double begin, duration;
-    std::array<double, 6> coefficients;  // of powers of the time since `begin`
+    std::array<double, 6> coefficients;  // of powers of the time since `begin`, in ascending order
     JointPoint at(double since) const;
   };
   std::vector<Piece> pieces_;
   double rest_;  // position before the first piece
 };
 
-/// The ways of all joints. A joint without a way takes other commands.
+/// The paths of all joints. A joint that follows no trajectory can take other commands.
 class TrajectoryFollower {
  public:
   explicit TrajectoryFollower(std::size_t joints) : joints_(joints) {}
 
-  /// Why the trajectory cannot be followed, or nothing.
+  /// Why the trajectory cannot be followed, or an empty string.
   std::string find_fault(const JointTrajectory& trajectory) const;
-  /// Whether one that has no fault has a point later than `now` [s].
+  /// Whether no point of a valid trajectory is later than `now` [s].
   static bool is_over(const JointTrajectory& trajectory, double now);
-  /// Follows a trajectory that has no fault and is not over. It begins at its start, or `now` if that is past: its
-  /// joints move from where they should be then to the first point after that, without a jump. Until then they go on as
-  /// before; other joints always do. `set_points`: where joints rest that follow nothing, one for each joint of the
-  /// trajectory.
+  /// Follows a valid trajectory that is not over. It begins at its start time, or at `now` if that is later. Joints
+  /// move without a jump from their present path to the first point after the beginning. Until the beginning, they
+  /// continue on their present path; other joints are not affected. `set_points`: positions of joints that follow no
+  /// trajectory yet, one for each joint of the trajectory.
   void follow(const JointTrajectory& trajectory, double now, const std::vector<double>& set_points);
-  /// Lets a joint that follows a trajectory decelerate for that time [s] and stop.
+  /// Decelerates a joint that follows a trajectory to rest, over `duration` [s].
   void stop(std::size_t joint, double now, double duration);
   /// Stops following for a joint at once.
   void release(std::size_t joint) { joints_[joint].follows = false; }
@@ -77,12 +78,12 @@ class TrajectoryFollower {
   void release_arrived(double time);
 
   bool follows(std::size_t joint) const { return joints_[joint].follows; }
-  /// Of a joint that follows a trajectory.
+  /// Set point of a joint that follows a trajectory.
   JointPoint at(std::size_t joint, double time) const { return joints_[joint].way.at(time); }
-  /// When it has arrived [s].
+  /// Time at which the joint arrives [s].
   double end(std::size_t joint) const { return joints_[joint].way.end(); }
   std::size_t joint_count() const { return joints_.size(); }
-  /// Others came behind them, or the last went.
+  /// Adapts to a new number of joints: joints are added or removed at the end.
   void resize(std::size_t joints) { joints_.resize(joints); }
 
  private:

@@ -6,7 +6,7 @@
 namespace flexarm::node {
 
 void WrenchSchedule::add(const AppliedWrench& wrench, double begin, double end) {
-  // What cannot act is refused here, not where it would begin.
+  // Checks the wrench now; otherwise an error would appear only when it begins to act.
   simulation_.apply_wrenches({wrench});
   entries_.push_back({wrench, begin, end, false});
   acting_.reserve(pulls_.size() + entries_.size());

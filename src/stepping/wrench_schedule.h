@@ -1,5 +1,5 @@
 #pragma once
-/// Wrenches that services apply, each for its time, and what pulls.
+/// Wrenches that services apply for a limited time, and pulls (springs that drag a link).
 
 #include <vector>
 
@@ -7,22 +7,22 @@
 
 namespace flexarm::node {
 
-/// Hands the simulation the wrenches of each step. Times are simulated ones that no reset sets back [s].
+/// Gives the simulation the wrenches of each step. All times are simulated times that resets do not set back [s].
 class WrenchSchedule {
  public:
   explicit WrenchSchedule(Simulation& simulation) : simulation_(simulation) {}
 
-  /// It acts in the steps whose middle is from `begin` to `end`.
+  /// Adds a wrench. It acts in steps whose middle lies between `begin` and `end`.
   /// @throws std::invalid_argument as Simulation::apply_wrenches().
   void add(const AppliedWrench& wrench, double begin, double end);
-  /// These act from the next step on, in place of the pulls of before.
-  /// @throws std::invalid_argument as Simulation::apply_wrenches(); all is as before then.
+  /// Replaces all pulls, from the next step on.
+  /// @throws std::invalid_argument as Simulation::apply_wrenches(); nothing has changed then.
   void set_pulls(const std::vector<AppliedWrench>& pulls);
-  /// Before each step, from `time` on.
+  /// To be called before each step, which begins at `time`.
   void update(double time);
-  /// Takes those away that act on links from this one on, and pulls.
+  /// Removes all wrenches on links with this index or a higher one, and all pulls.
   void clear_from(std::size_t link);
-  /// Takes all away, those that are yet to come, too.
+  /// Removes all wrenches and pulls, including those that have not begun yet.
   void clear();
 
  private:
@@ -37,7 +37,7 @@ class WrenchSchedule {
   Simulation& simulation_;
   std::vector<Entry> entries_;
   std::vector<AppliedWrench> pulls_;
-  std::vector<AppliedWrench> acting_;  ///< scratch with room for all entries and pulls
+  std::vector<AppliedWrench> acting_;  ///< scratch memory, large enough for all entries and pulls
 };
 
 }  // namespace flexarm::node

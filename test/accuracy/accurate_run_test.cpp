@@ -1,3 +1,4 @@
+// Tests runs to a given accuracy: their errors against finer runs, their choice of steps and schemes, and how they end.
 #include "flexarm/accuracy/accurate_run.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 namespace flexarm::test {
 namespace {
 
-/// The motion in equal steps.
+/// The motion in equal steps, `steps` per interval.
 JudgedMotion reference_motion(const SceneBuilder& b, double until, int intervals, int steps) {
   Simulation simulation(b.scene);
   simulation.set_step_size(until / intervals / steps);
@@ -52,7 +53,7 @@ TEST(AccurateRun, HasTheErrorThatWasAskedFor) {
     const double error = motion_error(run.motion, reference, run.scale);
     EXPECT_LE(run.estimate(), accuracy);
     EXPECT_LE(error, accuracy);
-    // The next power of the step is all that the estimate leaves out: it knows the error to a part of itself.
+    // The estimate neglects only the next power of the step, so it is accurate to a fraction of the error.
     EXPECT_NEAR(run.estimate(), error, 0.5 * error) << accuracy;
     EXPECT_NEAR(simulation.time(), kUntil, 1e-12);
     EXPECT_EQ(simulation.step_size(), b.scene.integrator.step) << "as it was before";
@@ -85,8 +86,8 @@ TEST(AccurateRun, ErrorsInChangingStepsFallWithTheOrderOfTheScheme) {
   }
 }
 
-/// Where the scene leaves the scheme open, one of fourth order needs fewer steps for a small error; the simulation
-/// keeps its own, and goes on from the end of the run.
+/// If the scene does not fix the scheme, a scheme of fourth order needs fewer steps for a small error. The simulation
+/// keeps its own scheme, and continues from the end of the run.
 TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
   constexpr double kAccuracy = 1e-6, kUntil = 1;
   long steps = 0;
@@ -119,7 +120,7 @@ TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
     EXPECT_LT((simulation.probe_pose(0).position - run.motion.points[0].back()).norm(), 1e-12);
     const Energies energies = simulation.energies();
     EXPECT_NEAR(energies.total() - energies.work, 0, kAccuracy * energies.kinetic) << "the account goes on";
-    // Commands are still there: the step after the run agrees with that of the other run to its error.
+    // Commands are still active: the next step agrees with the one of the other run, to the accuracy.
     ASSERT_TRUE(simulation.step().converged);
     ASSERT_TRUE(fine.step().converged);
     EXPECT_EQ(simulation.effort(shoulder), 3);
@@ -127,8 +128,8 @@ TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
   }
 }
 
-/// A try of fourth order is judged by what two of second order tend to: it needs no second one. What that limit errs
-/// itself, in the fourth order, too, is in the estimate.
+/// A try of fourth order is compared with the limit of two tries of second order, so it needs no second try. The error
+/// of this limit, which is also of fourth order, is part of the estimate.
 TEST(AccurateRun, IsJudgedByTheLimitOfTheOtherScheme) {
   constexpr double kAccuracy = 1e-5, kUntil = 1;
   constexpr int kIntervals = 50;
@@ -154,9 +155,10 @@ TEST(AccurateRun, IsJudgedByTheLimitOfTheOtherScheme) {
   EXPECT_GT(estimates.last, 0) << "each interval has an estimate, too";
 }
 
-/// The middle part of a step of em4 goes backwards by 4 p - 1 of it, p = 1 / (4 - 4^(1/3)). A strain has the stiffness
-/// 1/2 - beta / h of its beam there, h the part's length and beta its damping: none where h = 2 beta, and less where h
-/// is a little shorter, so that the beam gives way. Steps of that length are worse than those that are twice as long.
+/// The middle part of a step of em4 goes backwards by the fraction 4 p - 1 of it, p = 1 / (4 - 4^(1/3)). There, a
+/// strain has the stiffness 1/2 - beta / h of its beam, with the part's length h and the damping beta. It vanishes for
+/// h = 2 beta. If h is a little shorter, it is negative, and the beam gives way. Steps of this length have larger
+/// errors than steps of twice the length.
 TEST(AccurateRun, DoesNotBelieveStepsThatGoBackwardsThroughDamping) {
   constexpr double kAccuracy = 2e-5, kInterval = 0.06;
   constexpr int kIntervals = 25;
@@ -221,7 +223,7 @@ TEST(AccurateRun, RefusesWhatCannotBe) {
   EXPECT_THROW(simulation.set_step_size(std::nan("")), std::invalid_argument);
 }
 
-/// One iteration does not solve a step.
+/// One iteration is not enough for a step.
 TEST(AccurateRun, EndsWhereStepsFail) {
   SceneBuilder b = falling_arm();
   b.scene.integrator.max_iterations = 1;
@@ -244,7 +246,7 @@ TEST(AccurateRun, IsInterrupted) {
   EXPECT_EQ(run.end, AccurateRun::End::Interrupted);
 }
 
-/// When steps of the last try have ended.
+/// Keeps the times at the ends of the last try's steps.
 struct EndsOfSteps : RunWatcher {
   std::vector<double> times;
   void begin(const Simulation&, long, double) override { times.clear(); }
@@ -257,7 +259,7 @@ struct EndsOfSteps : RunWatcher {
   }
 };
 
-/// A servo that measures every 10 ms is measured at ends of steps, whatever intervals are.
+/// A servo samples every 10 ms. Its samples must be at ends of steps, whatever the intervals are.
 TEST(AccurateRun, HitsSamples) {
   SceneBuilder b = falling_arm();
   scene::ServoDescription& servo = b.servo("shoulder", 5, 0.2);

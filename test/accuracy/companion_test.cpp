@@ -1,3 +1,4 @@
+// Tests the companion of a simulation, which estimates the error of a run while it goes on, against finer runs.
 #include "flexarm/accuracy/companion.h"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ TEST(Companion, KnowsTheErrorOfWhatRuns) {
   EXPECT_NEAR(estimate, error, 0.3 * error);
 }
 
-/// Efforts that change from step to step have the same impulse for it: what they do to a mass is known exactly.
+/// Efforts that change from step to step have the same impulse in the companion's steps. So the exact error is known
+/// for a mass.
 TEST(Companion, FollowsCommands) {
   SceneBuilder b;
   b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
@@ -46,13 +48,14 @@ TEST(Companion, FollowsCommands) {
     ASSERT_TRUE(simulation.step().converged);
     estimate = companion.follow(simulation);
   }
-  // The acceleration changes once in a step of the companion, which its mean moves by h^2 / 2 of the change.
+  // The acceleration changes once in a step of the companion, whose mean moves the position by h^2 / 2 times this
+  // change.
   const double change = 0.5 * (0.3 + 0.1) / 2 * 1e-6;
   EXPECT_GT(estimate, 0);
   EXPECT_LE(estimate, 100 * change / 3);
 }
 
-/// The largest of estimates, and of distances from where a block on a rail is to be at the time.
+/// Largest estimate, and largest distance of a block on a rail from its exact position.
 struct Judged {
   double estimate = 0, error = 0;
 };
@@ -81,8 +84,8 @@ SceneBuilder block_at(double position, double velocity) {
   return b;
 }
 
-// An effort that turns from 6 N to -6 N somewhere in a step: 3 m/s^2 of 2 kg, so that a step is off by 6 m/s^2 h/2 at
-// most.
+// An effort that jumps from 6 N to -6 N anywhere in a step: 3 m/s^2 for 2 kg. So the velocity after the step is off by
+// at most 6 m/s^2 h/2.
 TEST(Companion, CountsJumpsWithinItsSteps) {
   const double h = 0.01, until = 1;
   for (int k = 0; k < 16; ++k) {
@@ -95,11 +98,11 @@ TEST(Companion, CountsJumpsWithinItsSteps) {
     const double bound = 0.5 * 6 * h * (until - jump);
     EXPECT_GE(judged.estimate, judged.error) << jump;
     EXPECT_LE(judged.error, 1.1 * bound) << jump;
-    EXPECT_LE(judged.estimate, 2.2 * bound) << jump;  // what the companion differs by comes in addition
+    EXPECT_LE(judged.estimate, 2.2 * bound) << jump;  // includes the companion's own error
   }
 }
 
-// Pushed by less than friction holds: it comes to rest after v^2/(2 a) and stays there.
+// The push is smaller than friction. The block comes to rest after v^2/(2 a) and stays there.
 TEST(Companion, CountsWhereFrictionBringsToRest) {
   for (const double start : {0.3, 0.317, 0.335, 0.349}) {
     SceneBuilder b = block_at(0, start);
@@ -114,7 +117,8 @@ TEST(Companion, CountsWhereFrictionBringsToRest) {
   }
 }
 
-// A motor at its limit until the error is small, then a spring: 4 m/s^2 until 0.1 m are left, and 40/s^2 of it then.
+// A motor at its limit until the error is small, then a spring: 4 m/s^2 until 0.1 m are left, then 40/s^2 times the
+// remaining distance.
 TEST(Companion, CountsWhereAMotorLeavesItsLimit) {
   for (const double target : {0.5, 0.513, 0.527, 0.541}) {
     SceneBuilder b = block_at(0, 0);
@@ -122,7 +126,8 @@ TEST(Companion, CountsWhereAMotorLeavesItsLimit) {
     servo.set_point = TimeFunction(target);
     servo.effort_limit = 8;
     const double free = std::sqrt(2 * (target - 0.1) / 4), rate = 4 * free, w = std::sqrt(40.0);
-    const double until = free + 0.9 * (kPi - 2 * std::atan2(rate / w, 0.1)) / w;  // before the limit on the other side
+    // Ends before the limit on the other side
+    const double until = free + 0.9 * (kPi - 2 * std::atan2(rate / w, 0.1)) / w;
     const Judged judged = follow_block(b, std::floor(until / 0.02) * 0.02, [&](double t) {
       return t < free ? 2 * t * t : target - 0.1 * std::cos(w * (t - free)) + rate / w * std::sin(w * (t - free));
     });
@@ -130,7 +135,7 @@ TEST(Companion, CountsWhereAMotorLeavesItsLimit) {
   }
 }
 
-// Smooth motions of what might have corners are judged as those of what has none.
+// If features that may cause corners cause none, the estimate is the same as without these features.
 TEST(Companion, NoCornerNoDoubt) {
   SceneBuilder plain = falling_links(), with = falling_links();
   with.scene.joints[0].limits = scene::JointLimits{-3, 3};
@@ -147,7 +152,7 @@ TEST(Companion, NoCornerNoDoubt) {
   EXPECT_NEAR(estimates[0] / estimates[1], 1, 1e-6);
 }
 
-// Of a corner in the first steps nothing is known.
+// A corner in the first steps gives no estimate.
 TEST(Companion, SaysWhatItDoesNotKnow) {
   SceneBuilder b = block_at(0, 0);
   b.scene.efforts.push_back({"rail", TimeFunction::parse("t < 0.014 ? 6 : -6"), {}});

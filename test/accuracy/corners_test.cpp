@@ -1,4 +1,4 @@
-/// Runs to an accuracy over jumps, stops, friction and play, against closed forms and motions that are not flexarm's.
+/// Tests runs to an accuracy over jumps, stops, friction and play, against closed forms and independent programs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ scene::SceneDescription read(const std::string& text) {
   return std::move(*result.scene);
 }
 
-/// A link on a hinge about `axis`, its centre of mass at `centre`, with `inertia` about it; probed at `probe`.
+/// A link on a hinge about `axis`, with its centre of mass at `centre` and `inertia` about it.
 std::string hinge(const std::string& axis, const std::string& centre, const std::string& inertia,
                   const std::string& of_joint, const std::string& others, const std::string& simulation) {
   return "<robot name='case'><link name='world'/><link name='a'><inertial><origin xyz='" + centre +
@@ -31,12 +31,12 @@ std::string hinge(const std::string& axis, const std::string& centre, const std:
          "<simulation>" + simulation + "</simulation></robot>";
 }
 
-/// The true error of a run, as it would be judged by a tenth of its times, and what it says of it.
+/// The true error of a run, at every tenth of its time, and the run's own estimate.
 struct Outcome {
   double error, estimate;
   long steps;  ///< of all tries
 };
-/// `truth`: at a tenth of `until` each.
+/// `truth`: positions at multiples of `until` / 10.
 Outcome outcome(const scene::SceneDescription& scene, double until, double accuracy, const Trajectory& truth) {
   Simulation simulation(scene);
   RunWatcher nobody;
@@ -48,7 +48,7 @@ Outcome outcome(const scene::SceneDescription& scene, double until, double accur
   return {trajectory_distance(tenths, truth) / run.scale, run.estimate(), run.steps};
 }
 
-/// A body that a constant torque turns: equal steps are exact between jumps, and so is the run.
+/// A constant torque rotates a body. Between jumps, equal steps are exact, and so is the run.
 TEST(Corners, JumpsOfLoadsAreEndsOfSteps) {
   for (const double jump : {0.3125, 1 / M_PI, std::sqrt(0.5)}) {
     const std::string time = std::to_string(jump);
@@ -63,14 +63,14 @@ TEST(Corners, JumpsOfLoadsAreEndsOfSteps) {
     }
     for (const double accuracy : {1e-3, 1e-5}) {
       const Outcome run = outcome(scene, 1, accuracy, truth);
-      // A hinge turns by 2 atan(h w / 2) in a step, which is of third order in it: that is left of the error.
+      // A hinge turns by 2 atan(h w / 2) in a step, an error of third order. Only this error remains.
       EXPECT_LE(run.error, accuracy) << jump;
       EXPECT_LE(run.steps, 1000) << "three tries of one to three steps in an interval";
     }
   }
 }
 
-/// A block slides to rest within a step, is thrown back, and so on: known exactly.
+/// Closed form of a block that friction brings to rest within a step.
 TEST(Corners, StopsByFrictionAreFound) {
   SceneBuilder b;
   b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
@@ -85,20 +85,20 @@ TEST(Corners, StopsByFrictionAreFound) {
     const double t = std::min(0.1 * i, 1.313 / 2);  // deceleration 2 m/s^2, until 0.6565 s
     truth.emplace_back(1.313 * t - t * t, 0, 0);
   }
-  // Between events mid-point steps are exact. A step in whose first thousandth it stops is at rest at its end, behind
-  // half of the way that the rate at the beginning would lead: a h^2 / 2000 too far at most.
+  // Between events, steps of the midpoint rule are exact. If the block stops in the first thousandth of a step, it is
+  // at rest at the end of the step, after half of the distance of the initial rate: at most a h^2 / 2000 too far.
   EXPECT_LE(outcome(b.scene, 1, 1e-3, truth).error * truth.back().x(), 2.0 / 2000 * 0.01 * 0.01);
 }
 
-/// A body of inertia 1, and a servo that turns it to the angle 1 with efforts that are cut at `limit`: in closed form
-/// between the instants at which what is asked for comes to the limit, which are found by bisection.
+/// A body of inertia 1 and a servo that moves it to the angle 1, with efforts that are cut at `limit`. The solution is
+/// in closed form between the instants at which the demand reaches or leaves the limit; bisection finds these.
 class CutServo {
  public:
   static constexpr double proportional = 100, derivative = 2, limit = 10;
   double angle = 0;
 
   void advance(double time) {
-    constexpr int kParts = 1000;  // in which the limit is met once at most
+    constexpr int kParts = 1000;  // so short that the limit is crossed at most once in each
     for (int i = 0; i < kParts; ++i) {
       double rest = time / kParts;
       CutServo end = after(rest);
@@ -165,7 +165,7 @@ struct Case {
   Trajectory truth;
 };
 
-/// Tips at a tenth of `until` each by scipy: scripts/outside_references, DOP853 with 1e-12 and events located.
+/// Positions at multiples of `until` / 10 by scipy: scripts/outside_references, DOP853 with 1e-12 and located events.
 std::vector<Case> cases() {
   const std::string down = "<gravity xyz='0 0 -9.81'/>", weightless = "<gravity xyz='0 0 0'/>";
   std::vector<Case> out;

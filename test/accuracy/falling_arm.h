@@ -1,11 +1,11 @@
 #pragma once
-/// Arms that fall, for tests of errors.
+/// Falling arms, for tests of errors.
 
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
 
-/// Two beams of two elements that hang on hinges and fall from the horizontal, not in one plane.
+/// Two beams of two elements on hinges, which fall from the horizontal, not in one plane.
 inline SceneBuilder falling_arm() {
   SceneBuilder b;
   const scene::DirectSection soft = section(4e3, 2e3, 40, 60, 1, 0.01, 0.005);
@@ -19,7 +19,7 @@ inline SceneBuilder falling_arm() {
   return b;
 }
 
-/// Two rigid links: without fast modes, so that orders are seen at any step.
+/// Two rigid links. They have no fast modes, so that orders are visible with any step.
 inline SceneBuilder falling_links() {
   SceneBuilder b;
   Matrix3 inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();

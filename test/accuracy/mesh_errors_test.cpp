@@ -1,3 +1,4 @@
+// Tests estimates of the errors of beam meshes against the exact error of a cantilever, and the choice of meshes.
 #include "accuracy/mesh_errors.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ using test::kRampRms;
 using test::linear_element_error;
 using test::ramped_cantilever;
 
-constexpr double kWay = 0.01;  // of the tip [m]
+constexpr double kWay = 0.01;  // displacement of the tip [m]
 
 MeshErrors measured(TrialRuns& trials, double wanted) {
   RunSettings settings = settings_of(trials.scene());
@@ -25,7 +26,8 @@ MeshErrors measured(TrialRuns& trials, double wanted) {
   return measure_meshes(trials, settings, freedom, wanted * kWay);
 }
 
-// What is left out there: large rotations, (0.01)^2, inertia, 1e-4, shear, 3e-5, the step, (pi h / T)^2 / 12 = 1e-4.
+// Effects that the formula neglects: large rotations, (0.01)^2; inertia, 1e-4; shear, 3e-5; the step, (pi h / T)^2 / 12
+// = 1e-4.
 constexpr double kLeftOut = 1e-3;
 
 TEST(MeshErrors, AreThoseOfTheDeflection) {
@@ -38,11 +40,11 @@ TEST(MeshErrors, AreThoseOfTheDeflection) {
     const double expected = linear_element_error(*mesh.mesh.elements) * kRampRms;
     EXPECT_NEAR(size(mesh.error) / kWay, expected, kLeftOut * (expected + kRampRms)) << mesh.mesh.text();
   }
-  // Two of the meshes, the finest, are good enough: errors below 1e-3 of 8 elements and more.
+  // The two finest meshes are good enough: the error is below 1e-3 for 8 elements and more.
   EXPECT_LE(size(errors.beams[0].back().error), 1e-3 * kWay);
 }
 
-/// Elements of order 2 and more have a static tip exactly: of the cubic deflection a mesh sees every node.
+/// Elements of order 2 and more give the static tip exactly, since they represent the cubic deflection at every node.
 TEST(MeshErrors, VanishWhereElementsAreExact) {
   for (const char* mesh : {"order=\"2\"", "order=\"3\""}) {
     TrialRuns trials(ramped_cantilever(mesh), kOneSecond, {}, {}, {});
@@ -53,7 +55,7 @@ TEST(MeshErrors, VanishWhereElementsAreExact) {
 }
 
 TEST(MeshErrors, OfARigidBeamAreAllThatItBends) {
-  // On a hinge that a motion holds: a rigid link that is fixed to the world takes no loads.
+  // The hinge is held by a motion, because a rigid link that is fixed to the world takes no loads.
   scene::SceneDescription scene = ramped_cantilever("");
   scene.joints[0].kind = scene::JointKind::Revolute;
   scene.joints[0].axis = Vector3::UnitY();
@@ -103,7 +105,7 @@ TEST(AutomaticMeshes, AreTheFewestElements) {
   }
 }
 
-/// A stiff rod that falls about a hinge, with one more thing in its scene.
+/// A stiff rod that falls about a hinge. `more` adds an element to the scene.
 scene::SceneDescription stiff_pendulum(const std::string& more) {
   const scene::ReadResult read = scene::read_scene_text(
       R"(<robot name="pendulum">
@@ -123,12 +125,12 @@ scene::SceneDescription stiff_pendulum(const std::string& more) {
 }
 
 TEST(AutomaticMeshes, AreNoneWhereABeamMayBeRigid) {
-  // It bends by some rho g A L^4 / (8 E I) = 1e-5 m of the metre that it falls.
+  // The rod bends by about rho g A L^4 / (8 E I) = 1e-5 m, while it falls by a metre.
   TrialRuns trials(stiff_pendulum(""), {0.01, 50}, {}, {}, {});
   const AutomaticMeshes meshes = automatic_meshes(trials, 1e-3);
   EXPECT_TRUE(meshes.is_met) << meshes.shortcoming;
   EXPECT_EQ(meshes.settings.beams.at(0).elements, 0);
-  // Strains are those of an elastic beam alone.
+  // A strain sensor needs an elastic beam.
   const std::string sensor = R"(<sensor name="gauge" kind="strain" link="rod" at="0.5 0 0.05"/>)";
   TrialRuns with_sensor(stiff_pendulum(sensor), {0.01, 50}, {}, {}, {});
   const AutomaticMeshes elastic = automatic_meshes(with_sensor, 1e-3);

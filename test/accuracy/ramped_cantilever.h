@@ -1,5 +1,5 @@
 #pragma once
-/// A slender cantilever that is bent so slowly and so little that its tip is where statics has it.
+/// A slender cantilever that is bent so slowly and so little that its tip follows the static solution.
 
 #include <cmath>
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace flexarm::test {
 
-/// Its tip comes 1 cm down within a second, by a force that grows as (1 - cos(pi t)) / 2. Its first mode has 56 Hz:
-/// inertia changes the way by (0.5 / 56)^2 of it. `mesh`: attributes of <beam>.
+/// The force grows as (1 - cos(pi t)) / 2 and moves the tip down by 1 cm within a second. The first mode has 56 Hz, so
+/// inertia changes the displacement by the fraction (0.5 / 56)^2. `mesh`: attributes of <beam>.
 inline scene::SceneDescription ramped_cantilever(const std::string& mesh) {
   const std::string text = fmt::format(R"scene(<robot name="ramp">
     <link name="world"/>
@@ -36,11 +36,11 @@ inline scene::SceneDescription ramped_cantilever(const std::string& mesh) {
 
 constexpr JudgedTimes kOneSecond{0.02, 50};
 
-/// Root mean square over the second of the tip's way, relative to its end.
+/// Root mean square of the tip's displacement over the second, relative to its final value.
 const double kRampRms = std::sqrt(3.0 / 8);
 
-/// Relative error of the deflection with `n` elements of order 1 (one point of integration, constant strains): that of
-/// the midpoint rule for the integral of (1 - s)^2.
+/// Relative error of the deflection with `n` elements of order 1 (one integration point, constant strains): that of the
+/// midpoint rule for the integral of (1 - s)^2.
 inline double linear_element_error(int n) {
   return 1 / (4.0 * n * n);
 }

@@ -1,3 +1,4 @@
+// Tests estimates of the errors of step sizes against runs with much finer steps.
 #include "accuracy/step_errors.h"
 
 #include <cmath>
@@ -18,7 +19,7 @@ scene::SceneDescription pendulum() {
   return scene::read_scene_file(test::source_path("config/examples/rigid_double_pendulum.urdf")).scene.value();
 }
 
-/// Nothing in it has kinks, so that errors fall by the order.
+/// A scene without kinks, so that errors fall with the order of the scheme.
 scene::SceneDescription smooth_arm() {
   return scene::read_scene_file(test::source_path("config/speed/six_joint_arm.urdf")).scene.value();
 }
@@ -38,7 +39,7 @@ TEST(StepErrors, AreThoseAgainstTheTruth) {
     EXPECT_TRUE(errors.is_met) << errors.shortcoming;
     EXPECT_LE(errors.finest(), wanted * scale);
     for (std::size_t i = errors.runs.size() - 2; i < errors.runs.size(); ++i)
-      // The next power of the step is a quarter of this one's error at most, where errors fall as they should.
+      // In the asymptotic range, the next power of the step is at most a quarter of the error.
       EXPECT_NEAR(motion_error(errors.runs[i]->motion, truth.motion, scale), size(errors.errors[i]) / scale,
                   0.25 * size(errors.errors[i]) / scale)
           << scheme;
@@ -63,7 +64,7 @@ TEST(StepErrors, EndAtRoundOff) {
   settings.scheme = "em4";
   const StepErrors errors = measure_steps(trials, settings, 1e-15, kInfinity);
   EXPECT_FALSE(errors.is_met);
-  EXPECT_NE(errors.shortcoming.find("smaller ones do not help"), std::string::npos) << errors.shortcoming;
+  EXPECT_NE(errors.shortcoming.find("smaller steps do not help"), std::string::npos) << errors.shortcoming;
 }
 
 TEST(StepErrors, EndWhereRunsTakeTooLong) {

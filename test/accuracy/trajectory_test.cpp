@@ -1,3 +1,4 @@
+// Tests the measure of the error between two motions by examples whose error is known.
 #include "flexarm/accuracy/trajectory.h"
 
 #include <cmath>
@@ -28,7 +29,7 @@ TEST(TrajectoryError, OfADriftIsItsRootMeanSquare) {
     const Trajectory reference = line(n);
     Trajectory drifting = reference;
     for (int i = 0; i <= n; ++i) drifting[i].z() += 0.8 * i / n;
-    // The trapezoidal rule of x^2 on [0, 1] is 1/3 + 1/(6 n^2).
+    // The trapezoidal rule gives 1/3 + 1/(6 n^2) for x^2 on [0, 1].
     EXPECT_NEAR(trajectory_error(drifting, reference), 0.1 * std::sqrt(1.0 / 3 + 1.0 / (6.0 * n * n)), 1e-15) << n;
   }
 }

@@ -1,4 +1,4 @@
-/// Eigenvalues of large operations whose eigenvalues are known.
+/// Tests eigenvalues of large linear operations with known eigenvalues.
 #include "analysis/largest_eigenpairs.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRows = 600;
 
-/// y = Q D Q x: a diagonal matrix, or one of blocks of two, seen in other coordinates: Q is the reflection at a plane.
+/// y = Q D Q x: a diagonal matrix, or one of 2 by 2 blocks, in other coordinates. Q is the reflection at a plane.
 class Reflected : public LinearOperation {
  public:
   explicit Reflected(Eigen::MatrixXd middle) : middle_(std::move(middle)), normal_(middle_.rows()) {
@@ -43,7 +43,7 @@ double residual(const LinearOperation& operation, const Eigenpair& pair) {
   return (image - pair.value * pair.vector).norm() / pair.vector.norm();
 }
 
-// As of beams with round sections, two alike: 1 / k^4, four times each.
+// Multiple eigenvalues, as of beams with round sections: 1 / k^4, four times each.
 TEST(LargestEigenpairs, FindsEqualOnesAsOftenAsTheyCome) {
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
   for (int i = 0; i < kRows; ++i) middle(i, i) = std::pow(1 + i / 4, -4.0);
@@ -73,7 +73,7 @@ TEST(LargestEigenpairs, FindsComplexOnes) {
   }
 }
 
-// An operation of rank 6: the space has all that it does after a few vectors, and goes on with others.
+// An operation of rank 6: after a few vectors, the Krylov space is invariant, and must continue with other vectors.
 TEST(LargestEigenpairs, GoesOnWhereTheSpaceIsInvariant) {
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
   for (int i = 0; i < 6; ++i) middle(i, i) = 6 - i;
@@ -82,7 +82,8 @@ TEST(LargestEigenpairs, GoesOnWhereTheSpaceIsInvariant) {
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(pairs[k].value.real(), 6 - k, 1e-13);
 }
 
-// As of overdamped modes: three lie apart, the others crowd at 1, as near to each other as round-off sees.
+// A spectrum like that of overdamped modes: three eigenvalues are well separated. All others are near 1, and their
+// distances are near round-off.
 TEST(LargestEigenpairs, OfACrowdThoseThatLieApartAreFound) {
   const int rows = 700;
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(rows, rows);
@@ -93,7 +94,7 @@ TEST(LargestEigenpairs, OfACrowdThoseThatLieApartAreFound) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(pairs[k].value.real(), 5 - k, 1e-13);
 }
 
-// A shift by one place: its eigenvalues lie on a circle, and none is found before the space is the whole one.
+// A cyclic shift by one place. Its eigenvalues lie on a circle, and none converges before the space is complete.
 TEST(LargestEigenpairs, SaysWhenItFindsNone) {
   const int rows = 1001;
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(rows, rows);
@@ -117,7 +118,7 @@ TEST(KrylovSpace, IsOrthonormalAndKnowsWhatTheOperationDoes) {
   space.grow(50);
   const Eigen::MatrixXd basis = space.basis(), coefficients = space.coefficients();
   EXPECT_LE((basis.transpose() * basis - Eigen::MatrixXd::Identity(50, 50)).norm(), 50 * 2.3e-16);
-  space.grow(50 + KrylovSpace::kBlock);  // which shows the vectors that the first 50 lead to
+  space.grow(50 + KrylovSpace::kBlock);  // shows the vectors to which the first 50 lead
   for (int k = 0; k < 50; ++k) {
     Eigen::VectorXd image(kRows);
     operation.apply(basis.col(k).eval().data(), image.data());

@@ -1,4 +1,4 @@
-// The linearised equations against differences of the nonlinear ones along the motion itself.
+// Tests the linearised equations against differences of the nonlinear equations along the motion.
 #include "analysis/linear_dynamics.h"
 
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 using Eigen::VectorXd;
 
-/// Velocities of all nodes and coordinates, by rates of the mechanism's coordinates.
+/// Velocities of all nodes and coordinates, from rates of the mechanism's coordinates.
 KnownRates rates_by(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps, const MechanismPose& pose,
                     const VectorXd& rates) {
   const VectorXd rows = maps.at(pose) * rates;
@@ -41,10 +41,10 @@ State placed(State state, const MechanismPose& pose) {
   return state;
 }
 
-/// A motion whose beginning is another motion's state a little later is that one, so that y''' is both the difference
-/// quotient of y'' along the motion and what M y''' + C y'' + K y' = 0 says. Tests that are Lagrange functions: of
-/// those the static tangent is the exact derivative. Relative error for differences over `time`, about a state that is
-/// bent and moves in all its coordinates.
+/// Relative error of y''' about a bent state that moves in all coordinates. Two values are compared: the difference
+/// quotient of y'' over `time` along the motion, and the solution of M y''' + C y'' + K y' = 0. They are equal, because
+/// the linearised equations also hold for the motion shifted in time. The scheme has Lagrange test functions, since for
+/// them the static tangent is the exact derivative.
 double error_of_third_derivative(const Model& model, double time) {
   const Scheme scheme = *find_scheme("newmark");
   const DegreesOfFreedom dof(model);
@@ -65,7 +65,7 @@ double error_of_third_derivative(const Model& model, double time) {
     return LinearDynamics(model, state, scheme, Reference::Instant, known);
   };
   const MechanismPose straight = maps.moved(pose_of(start), {none, none}, 0);
-  // Without loops the pose may be any; with them, what moves alone is the independent coordinates.
+  // Without loops, any pose is possible. With loops, only the independent coordinates move.
   const MechanismPose pose = model.closures.empty() ? maps.moved(straight, {rates, none}, 0.2) : straight;
   const LinearDynamics dynamics = at(pose, rates, start.actuators);
   const auto columns = [&](const VectorXd& own) {
@@ -99,7 +99,7 @@ double error_of_third_derivative(const Model& model, double time) {
   return (difference - third).norm() / third.norm();
 }
 
-/// `time` is short for the fastest motion, and a tenth of it long beside the round-off of differences.
+/// `time` must be short for the fastest motion; a tenth of it must be long for the round-off of differences.
 void expect_second_order(const Model& model, double time) {
   const double large = error_of_third_derivative(model, time), small = error_of_third_derivative(model, 0.1 * time);
   EXPECT_NEAR(std::log10(large / small), 2, 0.02) << large << ", " << small;
@@ -121,7 +121,7 @@ TEST(LinearDynamics, OfAFlexibleArmInMotion) {
   expect_second_order(build_model(builder.scene), 3e-4);
 }
 
-/// A motor on `coordinate` behind an elastic gear.
+/// A drive with its motor on `coordinate` behind an elastic gear.
 scene::DriveDescription drive(const std::string& coordinate, double inertia, double stiffness, double damping) {
   scene::DriveDescription out;
   out.coordinate = coordinate;
@@ -140,7 +140,7 @@ scene::ServoDescription servo(const std::string& coordinate, double kp, double k
   return out;
 }
 
-/// A loop of rigid links, whose joints have dampers.
+/// A loop of rigid links with dampers in its joints.
 SceneBuilder damped_four_bar() {
   SceneBuilder builder;
   builder.scene.gravity = Vector3(0, 0, -3);
@@ -162,7 +162,7 @@ TEST(LinearDynamics, OfALoopInMotion) {
   expect_second_order(model, 3e-3);
 }
 
-// Efforts of coordinates that a loop holds turn with the others.
+// The directions of efforts on coordinates that the loop determines change with the other coordinates.
 TEST(LinearDynamics, OfALoopWithDampersInMotion) {
   expect_second_order(build_model(damped_four_bar().scene), 3e-3);
 }

@@ -1,4 +1,4 @@
-// Natural modes of mechanisms whose frequencies are known in closed form or by counting.
+// Tests natural modes of mechanisms with known frequencies, in closed form or by counting.
 #include "analysis/modes.h"
 
 #include <gtest/gtest.h>
@@ -38,14 +38,14 @@ TEST(NaturalModes, InvertedPendulumGrows) {
   EXPECT_LT(modes[0].damping_ratio(), 0);
 }
 
-// What rests in a stop swings on its penalty, which the step in use decides.
+// A body at rest in a stop vibrates on the stop's penalty, which depends on the contact time.
 TEST(NaturalModes, OnAStop) {
   SceneBuilder builder;
   builder.body("block", 2, Vector3::Zero(), Matrix3::Identity());
   builder.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-1, 1};
   const Model model = build_model(builder.scene);
   State state = initial_state(model);
-  state.released[0].displacement[0] = 1 + 1e-6;  // so shallow that it does not harden
+  state.released[0].displacement[0] = 1 + 1e-6;  // so shallow that the stop is linear
   for (const double contact_time : {1e-2, 0.3}) {
     const std::vector<Mode> modes = natural_modes(model, state, 1, contact_time);
     ASSERT_EQ(modes.size(), 1u);
@@ -53,7 +53,7 @@ TEST(NaturalModes, OnAStop) {
   }
 }
 
-// A free beam has six rigid motions, and every node of a motion moves.
+// A free beam has six rigid motions, and every node takes part in them.
 TEST(NaturalModes, FreeBeamHasSixRigidMotions) {
   SceneBuilder builder;
   builder.beam("beam", {Vector3(1, 0, 0)}, section(1e4, 4e3, 5, 8, 1, 1e-3, 5e-4), 4, 3);
@@ -70,7 +70,8 @@ TEST(NaturalModes, FreeBeamHasSixRigidMotions) {
   }
 }
 
-// Coordinates that the round-off of other links' stiffness reaches: a stiff arm, folded, with a body that turns freely.
+// Free joints must be found although round-off of the stiffness of other links reaches them: a stiff folded arm with a
+// freely rotating body.
 TEST(NaturalModes, FreeJointsOfAStiffArm) {
   SceneBuilder builder;
   builder.beam("upper", {Vector3(7, 0, 0)}, section(1e8, 4e7, 1e6, 3e6, 40, 3, 1.5), 3, 2);
@@ -84,7 +85,7 @@ TEST(NaturalModes, FreeJointsOfAStiffArm) {
   const std::vector<Mode> modes = natural_modes(model, initial_state(model), 10);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(modes[k].is_free(), k < 4) << k;
   for (const Mode& mode : modes) EXPECT_LE(mode.rate, 0);
-  // Each free motion moves some joint.
+  // Each free motion moves at least one joint.
   for (int k = 0; k < 4; ++k) {
     double largest = 0;
     for (const std::complex<double>& motion : modes[k].coordinate_motion) largest = std::max(largest, std::abs(motion));
@@ -114,7 +115,7 @@ TEST(DampedModes, PendulumOnADampedHinge) {
     EXPECT_NEAR(modes[0].rate, -ratio * omega, 1e-10 * omega) << ratio;
     EXPECT_NEAR(modes[0].frequency, omega * std::sqrt(1 - ratio * ratio) / (2 * kPi), 1e-10 * omega) << ratio;
   }
-  // Overdamped: two rates.
+  // An overdamped mode has two rates.
   const Model model = build_model(damped_pendulum(2 * critical).scene);
   const std::vector<Mode> modes = natural_modes(model, initial_state(model), 5);
   ASSERT_EQ(modes.size(), 2u);
@@ -126,7 +127,7 @@ TEST(DampedModes, PendulumOnADampedHinge) {
   }
 }
 
-// A wheel that nothing but a damper holds: it may stand anywhere, and comes to rest at the rate d / I.
+// A wheel on a damper alone may be at rest at any angle, and comes to rest at the rate d / I.
 TEST(DampedModes, FreeWheelOnADamper) {
   SceneBuilder builder;
   builder.body("wheel", 2.0, Vector3::Zero(), 0.1 * Matrix3::Identity());
@@ -148,8 +149,8 @@ SceneBuilder damped_cantilever(double stiffness_proportional, double mass_propor
   return builder;
 }
 
-// D = eta K + alpha M damps a mode of circular frequency w by eta w / 2 + alpha / (2 w); sizes that are solved dense
-// and by iteration.
+// D = eta K + alpha M damps a mode of circular frequency w by eta w / 2 + alpha / (2 w). The small model is solved with
+// dense matrices, the large one by iteration.
 TEST(DampedModes, ProportionalDamping) {
   const double eta = 1e-3, alpha = 0.4;
   for (const int elements : {2, 30}) {
@@ -163,15 +164,16 @@ TEST(DampedModes, ProportionalDamping) {
       EXPECT_NEAR(modes[k].damping_ratio(), ratio, 1e-9) << elements;
       EXPECT_NEAR(2 * kPi * modes[k].frequency, omega * std::sqrt(1 - ratio * ratio), 1e-9 * omega) << elements;
     }
-    // Rotary inertia is damped at the nodes, and moves at the points between: the first bending modes have less than
-    // (k r)^2 of their energy in it, r^2 = 1e-3 m^2, k < 3 / m.
+    // Rotary inertia is damped at the nodes, but acts at the points between them. The first bending modes have less
+    // than the fraction (k r)^2 of their energy in it, with r^2 = 1e-3 m^2, k < 3 / m.
     const Model viscous = build_model(damped_cantilever(0, alpha, elements).scene);
     const std::vector<Mode> slow = natural_modes(viscous, initial_state(viscous), 4);
     for (int k = 0; k < 2; ++k) EXPECT_NEAR(slow[k].rate, -alpha / 2, 9e-3 * alpha / 2) << elements;
   }
 }
 
-// Above 2 / eta the beam is overdamped, and eigenvalues crowd at -1 / eta: the slow ones are found all the same.
+// Above 2 / eta the beam is overdamped, and many eigenvalues are near -1 / eta. The slow ones must be found all the
+// same.
 TEST(DampedModes, StrongDampingOfALargeModel) {
   const double eta = 0.02;
   const Model undamped = build_model(damped_cantilever(0, 0, 40).scene);
@@ -186,7 +188,7 @@ TEST(DampedModes, StrongDampingOfALargeModel) {
   }
 }
 
-// What is not damped does not decay, nor grow by round-off, beside what is.
+// Undamped motions neither decay nor grow by round-off of the damped ones.
 TEST(DampedModes, UndampedMotionsBesideDampedOnes) {
   SceneBuilder builder = damped_pendulum(0.5);
   builder.body("other", 2.0, Vector3(0, 0, -0.3), 0.1 * Matrix3::Identity());
@@ -213,7 +215,7 @@ TEST(NaturalModes, NothingMovesOrNothingAsked) {
   pendulum.joint("hinge", scene::JointKind::Continuous, "world", "bob", Vector3::Zero(), Vector3::UnitY());
   const Model model = build_model(pendulum.scene);
   EXPECT_TRUE(natural_modes(model, initial_state(model), 0).empty());
-  EXPECT_EQ(natural_modes(model, initial_state(model), 5).size(), 1u);  // no more than there are
+  EXPECT_EQ(natural_modes(model, initial_state(model), 5).size(), 1u);  // there are no more modes
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Equilibria: stable ones, the way to them, and what has none.
+// Tests equilibria: stable ones, the search for them, and scenes without equilibrium.
 #include "analysis/statics.h"
 
 #include <gtest/gtest.h>
@@ -24,10 +24,11 @@ using namespace test;
 using scene::JointKind;
 
 constexpr double kEuler = kPi * kPi / 4;  // buckling load of the column, EI = L = 1
-/// Equilibria are found up to the tolerance on updates, of IntegratorDescription, which contract by at least a half.
+/// Accuracy of equilibria: the tolerance on updates of IntegratorDescription, where updates contract by at least a
+/// half.
 constexpr double kTolerance = 2e-8;
 
-/// Clamped, upright.
+/// A clamped upright column.
 SceneBuilder column(double load, double across) {
   SceneBuilder b;
   b.beam("beam", {{0, 0, 1}}, section(1e5, 5e4, 1, 1, 1, 1e-3, 5e-4), 8, 2);
@@ -37,7 +38,7 @@ SceneBuilder column(double load, double across) {
   return b;
 }
 
-/// Of the tip of Euler's elastica, clamped below, of length 1, under `ratio` > 1 times the buckling load.
+/// Height of the tip of Euler's elastica, of length 1 and clamped below, under `ratio` > 1 times the buckling load.
 double height_of_elastica(double ratio) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {
@@ -47,7 +48,7 @@ double height_of_elastica(double ratio) {
   return 2 * std::comp_ellint_2(low) / std::comp_ellint_1(low) - 1;
 }
 
-/// Rods of 1 m and 1 kg on hinges about y, one behind the other along x.
+/// A chain of rods of 1 m and 1 kg along x on hinges about y.
 SceneBuilder pendulum(int links, const Vector3& gravity) {
   SceneBuilder b;
   b.scene.gravity = gravity;
@@ -71,15 +72,15 @@ TEST(Statics, ColumnBucklesWhatEverTheLoadSteps) {
       Simulation simulation(column(3 * kEuler, across * 3 * kEuler).scene);
       ASSERT_TRUE(simulation.solve_static(load_steps).converged) << across << " " << load_steps;
       EXPECT_FALSE(diverges(simulation));
-      // Bending strains of the elastica vary along two thirds of a wave: elements of order two, h = 1/8, are good to
-      // (2/3 2 pi h)^4 / 180 beside 1; the load across moves the tip by its own part.
+      // Bending strains of the elastica vary over two thirds of a wave. Elements of order two with h = 1/8 have an
+      // error of (2/3 2 pi h)^4 / 180. The lateral load moves the tip by its own share.
       EXPECT_NEAR(simulation.probe(0).pose.position.z(), height_of_elastica(3),
                   std::pow(2. / 3 * 2 * kPi / 8, 4) / 180 + across);
     }
 }
 
-// With interpolations whose strains depend on the past, too: their tangents are not symmetric, but the configuration is
-// one of the potential of the others.
+// Also tests interpolations whose strains depend on the past. Their tangents are not symmetric. The equilibrium is that
+// of the interpolations with a potential.
 TEST(Statics, StraightColumnIsToldAndCanBeHad) {
   for (const char* scheme : {"em", "std", "hht3"}) {
     SimulationOptions options;
@@ -120,15 +121,15 @@ TEST(Statics, PendulumsHang) {
     }
 }
 
-// What Sylvester's law is asked: the curvature of an upright pendulum is -m g l, beside a way of 1 rad of hinge and
-// centre.
+// The curvature of the potential by Sylvester's law: -m g l for an upright pendulum, for a rotation of 1 rad of hinge
+// and centre.
 TEST(Stability, UprightPendulum) {
   SceneBuilder b = pendulum(1, {-9.81, 0, 0});
   const Simulation simulation(b.scene);
   const Stability up = judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
   EXPECT_FALSE(up.is_stable());
   EXPECT_EQ(up.motion.link, "rod0");
-  const double ways = static_cast<double>(simulation.node_count());  // all turn by 1 rad
+  const double ways = static_cast<double>(simulation.node_count());  // all nodes rotate by 1 rad
   EXPECT_NEAR(up.motion.curvature * ways, -9.81 * 0.5, 1e-12 * 9.81);
 }
 
@@ -137,8 +138,8 @@ Stability stability_at_start(const SceneBuilder& b) {
   return judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
 }
 
-// Chains of so many joints are judged without a matrix: one that hangs, one that stands, and rods of which one stands
-// among those that hang. A rod that stands turns from its hinge by 1 rad with three nodes at most.
+// Chains of thousands of joints are judged without a dense matrix: a hanging chain, an upright one, and hanging rods
+// with an upright one among them. An upright rod rotates about its hinge by 1 rad, with at most three nodes.
 TEST(Stability, OfThousandsOfJoints) {
   constexpr int kLinks = 2000;
   EXPECT_TRUE(stability_at_start(pendulum(kLinks, {9.81, 0, 0})).is_stable());
@@ -154,8 +155,8 @@ TEST(Stability, OfThousandsOfJoints) {
   EXPECT_LE(stability.motion.curvature, -9.81 * 0.5 / 3);
 }
 
-/// Cranks of 1 m on a line, with a coupler of 2 m, turned by an angle from it, beams but for those named in `rigid`.
-/// `left`: the left crank's joints.
+/// A parallelogram of cranks of 1 m on a line and a coupler of 2 m, rotated by `angle` from this line. Links are beams,
+/// except those named in `rigid`. `left`: kind of the left crank's joints.
 SceneBuilder flexible_parallelogram(double angle, JointKind left, const std::set<std::string>& rigid = {}) {
   SceneBuilder b;
   const Vector3 across(0, 1, 0), crank(std::cos(angle), 0, std::sin(angle));
@@ -180,8 +181,8 @@ std::string dead_link(const SceneBuilder& b) {
   return link_at_dead_point(model_of(simulation), state_of(simulation), 0.01);
 }
 
-// A flat one may open as a parallelogram or cross over, however it stretches; one whose crank and coupler are clamped
-// has to bend.
+// A flat parallelogram may open as a parallelogram or as a crossed one, with or without stretching. If crank and
+// coupler are clamped, it would have to bend.
 TEST(Stability, FlexibleLoopsAtDeadPoints) {
   EXPECT_NE(dead_link(flexible_parallelogram(0, JointKind::Continuous)), "");
   for (const double angle : {0.01, 0.3, kPi / 2})
@@ -195,7 +196,7 @@ TEST(Stability, FlexibleLoopsAtDeadPoints) {
     EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous, rigid)), "") << angle;
   EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed, rigid)), "");
   ASSERT_EQ(build_model(flexible_parallelogram(0, JointKind::Continuous, rigid).scene).closures.size(), 1u);
-  for (const double slenderness : {1e5, 1e8}) {  // soft is not free
+  for (const double slenderness : {1e5, 1e8}) {  // soft beams are no free motion
     SceneBuilder soft = flexible_parallelogram(0, JointKind::Fixed);
     for (scene::LinkDescription& link : soft.scene.links)
       if (link.beam) link.beam->section = section(10 * slenderness, 4 * slenderness, 10, 10, 1, 1e-2, 5e-3);
@@ -203,14 +204,14 @@ TEST(Stability, FlexibleLoopsAtDeadPoints) {
   }
   EXPECT_EQ(dead_link(pendulum(3, Vector3::Zero())), "");
 
-  SceneBuilder ring;  // free to fly, and soft
+  SceneBuilder ring;  // it flies freely, and is soft
   ring.beam("ring", {{1, 0, 1}, {0, 0, 2}, {-1, 0, 1}, {0, 0, 0}}, section(1e9, 4e8, 1, 1, 1, 2e-9, 1e-9), 16, 2);
   ring.joint("free", JointKind::Floating, "world", "ring");
   close_loop(ring, "weld", JointKind::Fixed, "ring", "ring").origin.position.setZero();
   EXPECT_EQ(dead_link(ring), "");
 }
 
-// Loops: the multipliers' zeros on the diagonal are no instability, and what the loop holds is none either.
+// Loops: zeros on the diagonal at multipliers are no instability, and motions that the loop prevents are none either.
 TEST(Statics, LoopsFallAsTheyCan) {
   for (const double gravity : {-9.81, 9.81}) {
     SceneBuilder b;
@@ -232,7 +233,7 @@ TEST(Statics, LoopsFallAsTheyCan) {
   }
 }
 
-// Two shallow rods under an apex that is pushed through: no equilibrium is near where the loads' path ends.
+// Two shallow rods carry an apex that snaps through. There is no equilibrium near the end of the load path.
 TEST(Statics, ShallowTrussSnapsThrough) {
   SceneBuilder b;
   const scene::DirectSection rod = section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3);
@@ -268,7 +269,7 @@ TEST(Statics, WhatNothingMovesHasNoEquilibriumOfItsOwn) {
   EXPECT_EQ(result.reason, StepResult::Reason::SingularTangent);
 }
 
-// A beam that hangs down on an upright hinge may stand anywhere about it.
+// A beam that hangs on an upright hinge may be at rest at any angle about it.
 TEST(Statics, WhatMayStandElsewhereIsTold) {
   SceneBuilder b;
   b.scene.gravity = Vector3(0, 0, -9.81);
@@ -281,8 +282,8 @@ TEST(Statics, WhatMayStandElsewhereIsTold) {
   EXPECT_EQ(result.falling_link, "");
 }
 
-/// A pan axis that is turned from the vertical by `tilt`, a lift and an elbow across it; 0.1 kg each, 0.1 m long. With
-/// a beam in place of the upper arm if `is_flexible`.
+/// An arm with a pan axis that is tilted by `tilt` from the vertical, and a lift and an elbow across it. Each link has
+/// 0.1 kg and 0.1 m. If `is_flexible`, the upper arm is a beam.
 SceneBuilder pan_lift_elbow(double tilt, bool is_flexible) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -306,19 +307,19 @@ JointHold hold_of(const Simulation& simulation) {
   return joint_hold(model_of(simulation), 0.01, state_of(simulation));
 }
 
-// The lowest place of all: column, upper arm and forearm in the plane in which the pan axis leans, the arms straight
-// down. The forearm's end is then 0.2 m below the lift.
+// The lowest equilibrium: column, upper arm and forearm are in the plane in which the pan axis is tilted, and the arms
+// hang straight down. The forearm's end is then 0.2 m below the lift.
 TEST(Statics, ArmsUnderATiltedPanAxisHang) {
   for (const double tilt : {7.963267948966e-4, 0.01, 1e-5})
     for (const bool is_flexible : {false, true}) {
-      if (is_flexible && tilt < 1e-4) continue;  // below what round-off of the beam lets see
+      if (is_flexible && tilt < 1e-4) continue;  // round-off of the beam hides smaller tilts
       Simulation simulation(pan_lift_elbow(tilt, is_flexible).scene);
       const StaticResult result = simulation.solve_static(10);
       ASSERT_TRUE(result.converged) << tilt << ": " << to_string(result.reason);
       const std::size_t fore = simulation.link_names().size() - 1;
       const Pose end = simulation.link_pose(fore);
       const Vector3 lift(0, 0.05 * std::sin(tilt), 0.1 + 0.05 * std::cos(tilt));
-      // What the beam gives way is m g L / EA.
+      // The beam stretches by m g L / EA.
       const double stretch = is_flexible ? 2 * 0.2 * 9.81 * 0.1 / 1e6 : 0;
       EXPECT_LT((end.position - (lift - Vector3(0, 0, 0.1))).norm(), kTolerance + stretch) << tilt << is_flexible;
       EXPECT_LT((end.orientation * Vector3::UnitY() + Vector3::UnitZ()).norm(), 4 * kTolerance) << tilt << is_flexible;
@@ -327,7 +328,7 @@ TEST(Statics, ArmsUnderATiltedPanAxisHang) {
     }
 }
 
-// Gravity has no moment about a vertical axis: it stays where it starts, and is named.
+// Gravity has no moment about a vertical axis. The joint stays at its start, and is named.
 TEST(Statics, NeutralJointsStayWhereTheyStart) {
   for (const bool is_flexible : {false, true})
     for (const double start : {0.0, 0.7}) {
@@ -343,7 +344,8 @@ TEST(Statics, NeutralJointsStayWhereTheyStart) {
     }
 }
 
-// By differences of the force, whose own error is the third derivative, h^2 of what weight does, and round-off over h.
+// Compares with differences of the force. Their error is the third derivative, h^2 times the weight's effect, and
+// round-off over h.
 TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
   for (const bool is_flexible : {false, true}) {
     SceneBuilder b = pan_lift_elbow(0.3, is_flexible);
@@ -368,14 +370,14 @@ TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
       ASSERT_TRUE(potentials.look(ahead) && potentials.look(behind));
       EXPECT_NEAR(potentials.ways(at.state, ahead.state)[i], kStep, 1e-12);
       const Eigen::Vector3d difference = (ahead.force - behind.force) / (2 * kStep);
-      // Elements test by other functions than they vary by: their own error.
+      // The elements' test functions differ from the variation of their strains, which has an error of its own.
       const double own = is_flexible ? 1e-4 : 0;
       EXPECT_LT((difference - at.curvature.col(i)).norm(), potentials.reference() * (kStep * kStep + own + 1e-10));
     }
   }
 }
 
-// The same of the one freedom that a loop leaves: force and curvature are those under its constraints.
+// The same for the single degree of freedom of a loop: force and curvature under its constraints.
 TEST(JointPotentials, CurvatureOfALoopIsTheDerivativeOfTheForce) {
   SceneBuilder b = slider_crank();
   b.scene.gravity = {0, -9.81, 0};
@@ -390,7 +392,7 @@ TEST(JointPotentials, CurvatureOfALoopIsTheDerivativeOfTheForce) {
   ASSERT_EQ(potentials.axes().size(), 1U);
   ASSERT_TRUE(potentials.rest(at.state, 1, result));
   ASSERT_TRUE(potentials.look(at));
-  // dV/da of the crank's angle a, over what the chosen coordinate turns by with it.
+  // dV/da of the crank's angle a, divided by the derivative of the chosen coordinate with respect to a.
   const SliderCrank crank(kAngle);
   const double by_angle = 9.81 * (kCrankMass * kCrankCentre * std::cos(kAngle) + kRodMass * crank.first(kRodCentre)[1]);
   const std::size_t chosen = potentials.axes()[0].coordinate;
@@ -400,7 +402,7 @@ TEST(JointPotentials, CurvatureOfALoopIsTheDerivativeOfTheForce) {
   const Eigen::VectorXd step = Eigen::VectorXd::Constant(1, kStep);
   ASSERT_TRUE(potentials.move(at, step, ahead.state, result) && potentials.move(at, -step, behind.state, result));
   ASSERT_TRUE(potentials.look(ahead) && potentials.look(behind));
-  // The third derivative is of the size of the force over the way, 0.2 of the size, squared.
+  // The third derivative is about the force over the square of the length scale, 0.2.
   EXPECT_NEAR((ahead.force[0] - behind.force[0]) / (2 * kStep), at.curvature(0, 0),
               100 * potentials.reference() * kStep * kStep + 1e-8);
 }

@@ -1,3 +1,4 @@
+// Tests the search for the cheapest run with fixed steps that is accurate enough, as part of the benchmark.
 #include "bench/best_fixed.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ scene::SceneDescription slider(const std::string& joint, const std::string& rest
 }
 
 constexpr const char* kFree = R"(<limit lower="-9" upper="9" effort="0" velocity="0"/>)";
-constexpr double kFrequency = 5;  // of m = 2 and k = 50 [1/s]
+constexpr double kFrequency = 5;  // for m = 2 and k = 50 [1/s]
 
 JudgedMotion vibration(const JudgedTimes& times) {
   JudgedMotion motion(1);
@@ -42,16 +43,16 @@ TEST(BestFixed, IsAccurateEnoughAndNotByLuck) {
     EXPECT_LE(best->error, error);
     EXPECT_GT(best->iterations, 0);
     EXPECT_GT(runs.time_again(*best), 0);
-    // The mid-point rule's phase is late by (omega h)^2 / 12: with steps of an interval the way errs, root mean square
-    // over a time T much longer than a period, by omega T (omega h)^2 / 12 / sqrt 6 of an amplitude, and that is 2
-    // ways.
+    // The midpoint rule's phase has the relative error (omega h)^2 / 12. Over a time T much longer than a period, the
+    // root mean square of the position error is omega T (omega h)^2 / 12 / sqrt 6 of an amplitude. The motion has a
+    // range of 2 amplitudes.
     if (best->settings.scheme != "em4") {
       const double phase = std::pow(kFrequency * best->settings.step, 2) / 12 * kFrequency * times.until();
       EXPECT_NEAR(best->error, phase / std::sqrt(6) / 2, 0.2 * phase / std::sqrt(6) / 2 + 1e-6);
     }
   }
   EXPECT_GT(asked, 2);
-  // No time: nothing is found.
+  // Without time, no result is found.
   FixedRuns none(scene, times, {}, vibration(times), -1, [] {});
   EXPECT_EQ(none.best(1e-2), nullptr);
 }
@@ -70,7 +71,7 @@ TEST(BestFixed, ShiftedStepsEndWithTheIntervals) {
   EXPECT_FALSE(shifted_motion(scene, settings, times, {}, 0));
 }
 
-// A hit that is stepped finely gives back what the scene says (notes/stops.md): it is the law that references solve.
+// In fine steps, a stop has the restitution of the scene (notes/stops.md), i.e. the law that the references solve.
 TEST(BestFixed, StopsThrowBackWhatTheSceneSays) {
   for (const double restitution : {0.1, 0.3, 0.7}) {
     const scene::SceneDescription scene =
@@ -78,14 +79,14 @@ TEST(BestFixed, StopsThrowBackWhatTheSceneSays) {
                    std::to_string(restitution) + "\"/>",
                "", R"(velocity="1")");
     Simulation simulation(scene);
-    simulation.set_step_size(4e-6);  // of a contact of 10 ms: the oscillator's angle is 1e-3 in each
+    simulation.set_step_size(4e-6);  // 1e-3 of the oscillator's angle in a contact of 10 ms
     double before = 0, x = 0;
     for (int i = 0; i < 8000; ++i) {
       ASSERT_TRUE(simulation.step().converged);
       before = x;
       x = simulation.probe_pose(0).position.x();
     }
-    // The contact begins and ends within a step: 1e-3 of its angle.
+    // The contact begins and ends within a step, 1e-3 of its angle.
     EXPECT_NEAR((x - before) / 4e-6, -restitution, 5e-3 * restitution + 1e-3);
   }
 }

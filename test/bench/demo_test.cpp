@@ -1,4 +1,4 @@
-// What scripts/run shows: config/demo_arm.urdf, driven by the schedule of config/demo_commands.yaml.
+// Tests the demo of scripts/run: config/demo_arm.urdf, driven by the schedule of config/demo_commands.yaml.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Distance of a boom's end from the straight line along the axis of its root [m].
+/// Distance of a boom's end from the straight axis at its root [m].
 double deflection(const Simulation& simulation, std::size_t boom) {
   const Pose root = simulation.link_pose(boom);
   const Vector3 end = root.orientation.conjugate() * (simulation.tip_pose(boom).position - root.position);
@@ -59,7 +59,7 @@ TEST_F(Demo, BoomsSwingByADecimetreAndTheEnergyAccountBalances) {
     ASSERT_EQ(result.halvings, 0) << "at " << simulation.time() << " s";
     upper_swing = std::max(upper_swing, deflection(simulation, upper));
     lower_swing = std::max(lower_swing, deflection(simulation, lower));
-    const Energies energies = simulation.energies();  // at rest in the beginning: the account starts with zero
+    const Energies energies = simulation.energies();  // at rest at the start, so the account starts with zero
     imbalance = std::max(imbalance, std::abs(energies.total() - energies.work + energies.dissipated));
   }
   EXPECT_GT(upper_swing, 0.04) << "as stiff as the lower one, and loaded less";
@@ -67,7 +67,7 @@ TEST_F(Demo, BoomsSwingByADecimetreAndTheEnergyAccountBalances) {
   EXPECT_LT(imbalance, 1e-6 * simulation.energies().work) << "only what Newton leaves unsolved may leak";
 }
 
-// The straight arm with locked motors and without its payload, as published; docs/demo.md says where.
+// Published frequencies of the straight arm with locked motors and without its payload; docs/demo.md names the source.
 TEST_F(Demo, HasThePublishedFrequencies) {
   ASSERT_TRUE(scene_.scene);
   scene::SceneDescription scene = *scene_.scene;

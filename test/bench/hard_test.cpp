@@ -1,4 +1,4 @@
-// The report on hard cases tells what became of each run, whatever becomes of it.
+// Tests the report on hard cases: it gives the outcome of each run, whatever happens in the run.
 #include "bench/hard.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using End = HardOutcome::End;
 
-/// A body of 1 kg on a rail, pushed by 2 N for 1 s: it goes 1 m.
+/// A body of 1 kg on a rail, pushed by 2 N for 1 s: it moves by 1 m.
 HardCase carriage() {
   using namespace urdf;
   HardCase hard;
@@ -41,7 +41,7 @@ Target rail_at(std::optional<double> expected) {
   return target;
 }
 
-/// What measures the bound does something else.
+/// The case with another action in the function that measures its bound.
 HardCase with_trouble(const std::function<void()>& trouble) {
   HardCase hard = carriage();
   hard.bound = Bound{"trouble", [trouble](const Simulation&) { return trouble(), 0; }};
@@ -121,7 +121,7 @@ TEST(HardRuns, EnergyFromNowhereIsWrong) {
   EXPECT_EQ(flaw(carriage(), outcome), "more energy lost than there was");
 }
 
-// What touches gains nothing, and schemes without contact are not asked for it.
+// A contact must not gain energy, and schemes without contact are not run.
 TEST(HardRuns, WhatTouchesHasRulesOfItsOwn) {
   HardCase hard = carriage();
   hard.touches = true;
@@ -153,7 +153,7 @@ TEST(HardRuns, AFreeMotionMustKeepItsMomenta) {
 TEST(HardRuns, AFailureHasItsTimeAndReason) {
   HardCase hard = carriage();
   hard.scene.replace(hard.scene.find("history=\"2\""), 11,
-                     "history=\"2 + 0*sqrt(0.42 - t)\"");  // no number from then on
+                     "history=\"2 + 0*sqrt(0.42 - t)\"");  // not a number from then on
   const HardOutcome outcome = run_once(hard);
   EXPECT_EQ(outcome.end, End::Failed);
   EXPECT_GE(outcome.time, 0.4);

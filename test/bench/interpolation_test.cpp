@@ -1,4 +1,4 @@
-// What theory says about interpolations and velocity rules, by measurement.
+// Tests by measurement what theory says about interpolations and velocity rules.
 #include "bench/dynamic_objectivity.h"
 #include "bench/path_dependence.h"
 #include "bench/strain_invariance.h"
@@ -7,9 +7,9 @@
 namespace flexarm::bench {
 namespace {
 
-/// Identities of a few dozen products of rotations.
+/// Round-off of identities with a few dozen products of rotations.
 constexpr double kRoundOff = 1e-13;
-/// What is not an identity misses by the size of the rotations to some power: far more than this.
+/// Expressions that are no identity differ by a power of the rotations' size, far more than this.
 constexpr double kVisible = 1e-6;
 
 TEST(PathDependence, Table53) {
@@ -66,7 +66,7 @@ TEST_P(EachVariant, OnlyUnscaledVelocityRulesIgnoreTheSpin) {
     EXPECT_LT(change.value.twist, 1e-10);  // twelve solutions with a tolerance of 1e-11
     EXPECT_LT(change.value.angular_velocity, 1e-10);
   } else if (!GetParam().scheme.is_composition) {
-    // The tangent-scaled increment is longer by (omega h)^2 / 12, 2 % here; five sub-steps have much less.
+    // The tangent-scaled increment is longer by (omega h)^2 / 12, 2 % here. Five sub-steps have a much smaller effect.
     EXPECT_GT(change.value.twist, 1e-3);
     EXPECT_GT(change.value.angular_velocity, 1e-3);
   }

@@ -1,4 +1,4 @@
-// What schemes claim, on the scenes of the properties report.
+// Tests the claims of schemes on the scenes of the properties report.
 #include "bench/conservation.h"
 #include "bench/dissipation.h"
 #include "bench/order.h"
@@ -16,7 +16,7 @@ TEST_P(FreeFlight, KeepsWhatTheSchemeClaims) {
   const Scheme& scheme = GetParam().scheme;
   const Measured<InvariantDrift> drift = invariant_drift(GetParam(), true);
   ASSERT_FALSE(drift.failure);
-  // 100 steps, each with Newton's remainder of about 1e-15 times a condition number.
+  // 100 steps, each with an error of Newton's method of about 1e-15 times a condition number.
   const double kept = 1e-10;
   if (scheme.conserves_momenta) {
     EXPECT_LT(drift.value.linear_momentum, kept);
@@ -28,7 +28,7 @@ TEST_P(FreeFlight, KeepsWhatTheSchemeClaims) {
   if (scheme.dissipation.any()) {
     EXPECT_LT(drift.value.growth, kept);
   }
-  // The measurement can see an error: nobody is conserving by accident.
+  // The measurement detects an error: a scheme that does not claim conservation must not conserve.
   if (!scheme.conserves_energy) {
     EXPECT_GT(drift.value.energy, kept);
   }
@@ -82,8 +82,9 @@ TEST(Oscillator, LosesNothingWhereEnergyIsConserved) {
 }
 
 TEST(Oscillator, BackwardVelocityHasItsSpectralRadius) {
-  // (1 + a/2) z^2 - (2 - a/2) z + 1 = 0 with a = (omega h)^2, complex roots below a = 12 + 8 sqrt(2).
-  // A slope over n samples is off by up to 6/n^2 times a bounded oscillation about it; here n > 25 before round-off.
+  // The characteristic polynomial is (1 + a/2) z^2 - (2 - a/2) z + 1 with a = (omega h)^2. Its roots are complex below
+  // a = 12 + 8 sqrt(2). A slope over n samples is off by up to 6/n^2 times a bounded oscillation about it; here n > 25
+  // before round-off.
   for (const double frequency : {0.3, 1.0, 2.0})
     EXPECT_NEAR(dissipation(scheme_named("m2"), frequency, false).value.spectral_radius,
                 1 / std::sqrt(1 + 0.5 * frequency * frequency), 0.01)
@@ -91,7 +92,7 @@ TEST(Oscillator, BackwardVelocityHasItsSpectralRadius) {
 }
 
 TEST(Oscillator, HighFrequenciesDecayByTheRadiusAskedFor) {
-  // HHT: rho = (1 + alpha) / (1 - alpha). Multiple roots make the measured slope approach its limit slowly.
+  // For HHT, rho = (1 + alpha) / (1 - alpha). With multiple roots, the measured slope approaches its limit slowly.
   for (const char* name : {"hht1", "hht2", "hht3"})
     EXPECT_NEAR(dissipation(scheme_named(name), 1000, false).value.spectral_radius, 0.95 / 1.05, 0.02) << name;
   for (const char* name : {"edmc1", "edmc2"})

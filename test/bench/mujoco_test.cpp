@@ -1,4 +1,4 @@
-// Two programs that share nothing, on one problem.
+// Compares flexarm with MuJoCo, which shares no code with it, on the same problems.
 #include "bench/mujoco.h"
 
 #include <gtest/gtest.h>
@@ -53,8 +53,8 @@ TEST(MuJoCo, SwingsTheDoublePendulumAsFlexarmDoes) {
   const PeerRun& run = run_of(runs, "RK4", 1e-3);
   ASSERT_TRUE(run.completed);
   ASSERT_EQ(run.probe.size(), kTimes.size());
-  // Of the whole pendulum's length. A chain of n rigid parts errs by 1/n^2 in what bends: 6 % of the bending, which is
-  // less than a half of the length.
+  // Tolerance relative to the pendulum's length. A chain of n rigid parts has an error of 1/n^2 of the bending, 6 %.
+  // The bending is less than half of the length.
   for (std::size_t i = 0; i < kTimes.size(); ++i)
     EXPECT_LT((run.probe[i] - expected[i]).norm(), 0.03 * 2) << "at " << kTimes[i] << " s";
   EXPECT_GT(run.seconds, 0);
@@ -75,7 +75,8 @@ TEST(MuJoCo, SwingsTheRigidArmAsFlexarmDoes) {
   const Trajectory coarse = run_speed(config, problem, {"em4", 0, 0, 0.01}).trajectory,
                    fine = run_speed(config, problem, {"em4", 0, 0, 0.005}).trajectory;
   EXPECT_LT((run.probe[0] - fine[0]).norm(), 1e-14);
-  // Fourth order leaves a fifteenth of the difference in the finer run; MuJoCo's, five times finer still, less.
+  // With fourth order, the finer run has an error of a fifteenth of the difference. MuJoCo's run is five times finer,
+  // so its error is smaller.
   for (std::size_t i = 1; i < fine.size(); ++i)
     EXPECT_LT((run.probe[i] - fine[i]).norm(), 0.2 * (coarse[i] - fine[i]).norm()) << i;
 }
@@ -84,7 +85,8 @@ TEST(MuJoCo, SaysWhereItBlowsUpAndWhereItIsDamped) {
   const std::vector<PeerRun> runs = quick_runs(PeerProblem::DoublePendulum, {1});
   if (runs.empty()) GTEST_SKIP() << "built without MuJoCo";
   const PeerRun &undamped = run_of(runs, "Euler", 1e-2), &damped = run_of(runs, "Euler, damping h/2 EI/l", 1e-2);
-  // Segments of l = 1/4 m turning against each other, omega^2 = 4 (EI / l) / (m l^3 / 12 + 1e-4 l): omega h = 4.9 > 2.
+  // Segments of l = 1/4 m rotate against each other with omega^2 = 4 (EI / l) / (m l^3 / 12 + 1e-4 l): omega h = 4.9 >
+  // 2.
   EXPECT_FALSE(undamped.completed);
   EXPECT_TRUE(undamped.probe.empty());
   EXPECT_TRUE(damped.completed);
@@ -92,7 +94,8 @@ TEST(MuJoCo, SaysWhereItBlowsUpAndWhereItIsDamped) {
 }
 
 TEST(MuJoCo, TurnsTheHubByThePrescribedAngle) {
-  // At 20 s the beam has turned by 6 t - 45 and trembles only: centrifugally stiffened, it bends by some millimetres.
+  // At 20 s the hub's angle is 6 t - 45, and the beam only trembles. It is stiffened by centrifugal forces and bends by
+  // a few millimetres.
   const std::vector<PeerRun> runs = quick_runs(PeerProblem::SpinUp, {20});
   if (runs.empty()) GTEST_SKIP() << "built without MuJoCo";
   for (const PeerRun& run : runs) {

@@ -1,3 +1,4 @@
+// Tests the reading of reference motions that another program has computed, and the errors of bad files.
 #include "bench/outside_references.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 namespace flexarm::bench {
 namespace {
 
-/// A body that falls from rest: y = -g t^2 / 2, with g = 8 m/s^2 in 1 s and 4 intervals.
+/// Tests references of a body that falls from rest: y = -g t^2 / 2, with g = 8 m/s^2, in 1 s and 4 intervals.
 class OutsideReferences : public testing::Test {
  protected:
   void SetUp() override {
@@ -23,7 +24,7 @@ class OutsideReferences : public testing::Test {
     write("index.csv", kHead + "fall,forces,\"fall, free\",1,1,4,1e-12,0,outside\n");
   }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ + "/" + name) << text; }
-  /// What is said of a folder that is refused.
+  /// The error message for a folder that is refused.
   std::string refusal() const {
     try {
       read_outside_references(folder_);

@@ -1,3 +1,4 @@
+// Tests the random arms of the benchmark: they are reproducible, valid, and of all kinds.
 #include "bench/random_arms.h"
 
 #include <gtest/gtest.h>

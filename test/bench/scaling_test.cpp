@@ -1,3 +1,4 @@
+// Tests the benchmark of scaling: the slopes that it fits, the sizes of its scenes, and its report.
 #include "bench/scaling.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,7 @@
 namespace flexarm::bench {
 namespace {
 
-// Round-off of logarithms of sizes up to 1e5 in a fit over a decade at least.
+// Round-off of logarithms of sizes up to 1e5, in a fit over at least a decade.
 constexpr double kSlopeRoundOff = 1e-12;
 
 TEST(Scaling, SlopeOfAPowerLawIsItsExponent) {
@@ -23,7 +24,7 @@ TEST(Scaling, SlopeOfAPowerLawIsItsExponent) {
 }
 
 TEST(Scaling, SlopeIsTheLeastSquaresFit) {
-  // Deviations in log y by +d, -2 d, +d at equal distances in log x are orthogonal to constants and to log x.
+  // Deviations of log y by +d, -2 d, +d at equal distances in log x are orthogonal to constants and to log x.
   const std::vector<double> x = {1, 10, 100};
   std::vector<double> y;
   for (int i = 0; i < 3; ++i) y.push_back(x[i] * x[i] * std::exp(i == 1 ? -0.2 : 0.1));
@@ -36,7 +37,7 @@ TEST(Scaling, FixedCostsOfSmallSizesDoNotCount) {
     x.push_back(size);
     y.push_back(size < 50 ? 1.0 : size);
   }
-  // Over x = 0 ... 4 (decades) y = 0, 0, 2, 3, 4.
+  // For x = 0 ... 4 (decades), y is 0, 0, 2, 3, 4.
   EXPECT_NEAR(log_slope(x, y), 1.1, kSlopeRoundOff);
   EXPECT_NEAR(log_slope(x, y, 0.01), 1, kSlopeRoundOff);
 }
@@ -47,7 +48,7 @@ TEST(Scaling, OnePointHasNoSlope) {
 }
 
 TEST(Scaling, FamiliesHaveTheSizesThatTheySay) {
-  // Unknowns: 6 per node of a beam but the clamped one; 1 per hinge.
+  // Unknowns: 6 per node of a beam except the clamped node, and 1 per hinge.
   const std::vector<ScalingFamily> families = scaling_families(true);
   ASSERT_EQ(families.size(), 4u);
   const std::size_t in_tree = 6 * (2 * 3 + 2 * (1 + 2 + 3)) + 1;  // branches of 1, 2, 3 elements, the second on a hinge

@@ -1,4 +1,4 @@
-// The speed report measures what it says: its error, its runs, its choice of the fastest.
+// Tests that the speed report measures correctly: errors, runs, and the choice of the fastest run.
 #include "bench/speed.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ SpeedProblem problem_named(const std::string& name) {
 }
 
 TEST(SpeedRuns, ErrorsFallWithTheStepByTheOrderOfTheScheme) {
-  // The only problem without sudden loads, whose fast waves no step here resolves.
+  // The only problem without sudden loads. Their fast waves would not be resolved by the steps here.
   SpeedProblem problem = problem_named("spin_up");
   problem.until = 4;
   const auto run = [&](const std::string& scheme, double step) {
@@ -36,7 +36,8 @@ TEST(SpeedRuns, ErrorsFallWithTheStepByTheOrderOfTheScheme) {
   }
 }
 
-// The arm turns nine times, but what counts is its tip's lag behind the hub, 0.574 m at most in the fine solution.
+// The arm turns nine times. The error is relative to the tip's lag behind the hub, at most 0.574 m in the fine
+// solution.
 TEST(SpeedRuns, SpinUpIsComparedInTheFrameOfTheHub) {
   const SpeedRun run = run_speed(kConfig, problem_named("spin_up"), {"em", 2, 4, 0.05});
   ASSERT_EQ(run.frames.size(), run.trajectory.size());

@@ -1,4 +1,4 @@
-// The thesis's examples by flexarm's default contact, against what the text states of them.
+// Compares the thesis's examples with flexarm's default contact with the thesis's results.
 #include "bench/thesis.h"
 #include "support/source_path.h"
 
@@ -19,12 +19,13 @@ ThesisOutcome outcome_of(const std::string& number, const std::string& label, do
   throw std::invalid_argument(number + " " + label);
 }
 
-/// Energy closes to what Newton's method leaves in thousands of steps.
+/// Tolerance of the energy account: the error of Newton's method in thousands of steps.
 constexpr double kClosed = 1e-8;
 
-// 6.25 s by the rigid estimate L / (w c); stiffer beams come closer to it, node-to-node and node-to-element alike.
+// The rigid estimate is L / (w c) = 6.25 s. Stiffer beams come closer to it, with both node-to-node and node-to-element
+// contact.
 TEST(Thesis, StiffArmsDescendAsTheRigidEstimateSays) {
-  // The arm (0.5 kg) starts without descent, for which its spin pays: w J = w' (J + m c^2).
+  // The arm (0.5 kg) starts without descent. Its descent reduces the spin: w J = w' (J + m c^2).
   const double J = 0.125 / 3 + 0.01 * 0.5, rigid = 6.25 * (1 + 0.5 * 0.02 * 0.02 / J);
   for (const char* how : {"node-to-node, em", "node-to-element, em, sm_em"}) {
     double last = 1;
@@ -33,7 +34,7 @@ TEST(Thesis, StiffArmsDescendAsTheRigidEstimateSays) {
       const ThesisOutcome out = outcome_of("12.1", name + std::string(how), 0.02);
       ASSERT_TRUE(out.arrival) << name << how;
       EXPECT_LT(std::abs(*out.arrival - rigid), last) << name << how;
-      // Newton leaves 1e-15 m in a step, against forces up to EA; kinetic energy 1.5 J.
+      // Newton's method leaves 1e-15 m in a step, against forces up to EA. The kinetic energy is 1.5 J.
       EXPECT_LT(out.energy_defect, 350 * 1e-15 * 1e4 * factor / 1.5);
       last = std::abs(*out.arrival - rigid);
     }
@@ -45,7 +46,7 @@ TEST(Thesis, StiffArmsDescendAsTheRigidEstimateSays) {
 TEST(Thesis, SlidersPassTheirBordersWhenTheThesisSays) {
   const ThesisOutcome descends = outcome_of("12.1", "node-to-element, em, sm_em", 0.02);
   ASSERT_TRUE(descends.arrival);
-  EXPECT_NEAR(*descends.arrival, 6.78, 0.02);  // the last step computed there
+  EXPECT_NEAR(*descends.arrival, 6.78, 0.02);  // the last step that the thesis computed
   ASSERT_GE(descends.crossings.size(), 2u);
   EXPECT_NEAR(descends.crossings[0], 1.76, 0.04);
   EXPECT_NEAR(descends.crossings[1], 3.48, 0.04);

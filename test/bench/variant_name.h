@@ -1,5 +1,5 @@
 #pragma once
-/// Names of schemes with their options in the output of tests.
+/// Prints names of schemes with their options in the output of tests.
 
 #include <ostream>
 #include <string>

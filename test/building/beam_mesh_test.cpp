@@ -1,4 +1,4 @@
-// Meshes of flexible links.
+// Tests meshes of flexible links.
 #include "building/beam_mesh.h"
 
 #include <gtest/gtest.h>
@@ -63,8 +63,8 @@ TEST(BeamMesh, BordersAtAttachmentsAndPieces) {
   const BeamMesh mesh = mesh_of(beam_along({{1, 0, 0}, {3, 0, 0}}, 8, 1), {0.25, 2.5, 0.0, 3.0, 0.25 + 1e-13});
   for (const double s : {0.0, 0.25, 1.0, 2.5, 3.0}) EXPECT_NEAR(mesh.nodes[mesh.node_at(s)].arc_length, s, 1e-12);
   EXPECT_EQ(mesh.elements.size(), 8u);
-  EXPECT_EQ(mesh.nodes.size(), 9u);  // no kink: no node twice
-  // In proportion to the lengths 0.25, 0.75, 1.5, 0.5, and at least one each.
+  EXPECT_EQ(mesh.nodes.size(), 9u);  // without a kink, no node occurs twice
+  // The elements are distributed in proportion to the lengths 0.25, 0.75, 1.5, 0.5, with at least one on each.
   std::vector<double> lengths;
   double from = 0;
   for (const MeshElement& element : mesh.elements) lengths.push_back(element.end - from), from = element.end;
@@ -103,7 +103,7 @@ TEST(BeamMesh, KinkHasTwoWeldedNodes) {
   EXPECT_EQ(mesh.elements[2].nodes.front(), 5);
 }
 
-// Something attached to a kink must not blur it, whatever round-off its arc length carries.
+// An attachment at a kink must keep the kink, whatever round-off its arc length has.
 TEST(BeamMesh, AttachmentAtAKink) {
   for (const double first : {1.0, 0.1, 0.3, 1.0 / 3, 0.7, 2.1}) {
     const scene::BeamDescription beam = beam_along({{first, 0.2, 0.05}, {first, 1.3, 0.05}}, 4, 2);
@@ -133,7 +133,7 @@ TEST(BeamMesh, AutomaticElementCount) {
   EXPECT_GT(automatic_element_count(1, 0), automatic_element_count(2, 0));
 }
 
-// The centroid's line carries the nodes, the reference line the lengths.
+// The nodes are on the line of centroids; the lengths are those of the reference line.
 TEST(BeamMesh, OffsetCentroid) {
   scene::BeamDescription beam = beam_along({{2, 0, 0}}, 2, 2);
   scene::MatrixSection matrix;

@@ -1,4 +1,4 @@
-// Undeformed centrelines.
+// Tests undeformed centrelines.
 #include "building/centreline.h"
 
 #include <limits>
@@ -25,7 +25,7 @@ Vector3 tangent(const Centreline& line, double s, bool before = true) {
   return line.at(s, before).orientation * Vector3::UnitX();
 }
 
-/// Line along x, quarter circle into y, kink into z with a twist.
+/// A line along x, a quarter circle towards y, and a kink to a line along z with a twist.
 std::vector<CentrelinePiece> hook() {
   return {line({2, 0, 0}), arc({3, 1, 0}, {2, 1, 0}, 0.4), line({3, 1, 1.5}, -0.7)};
 }
@@ -51,7 +51,7 @@ TEST(Centreline, PointsOfAnArcLieOnItsCircle) {
   EXPECT_LE((centreline.at(centreline.length()).position - Vector3(3, 1, 1.5)).norm(), 1e-14);
 }
 
-// Hardly curved: no cancellation.
+// A flat arc causes no loss of digits.
 TEST(Centreline, VeryFlatArc) {
   const double radius = 1e6, angle = 1e-6;
   const Centreline centreline(
@@ -68,7 +68,7 @@ TEST(Centreline, SectionAxisIsTheTangentOfTheLine) {
   }
 }
 
-// In an untwisted arc the section does not turn about the tangent; twist does it, evenly.
+// In an untwisted arc, the section does not rotate about the tangent. A twist rotates it at a constant rate.
 TEST(Centreline, TwistIsTheTurningAboutTheTangent) {
   const Centreline centreline(hook(), {});
   for (const auto& [arc_length, rate] :
@@ -83,16 +83,16 @@ TEST(Centreline, TwistIsTheTurningAboutTheTangent) {
 
 TEST(Centreline, FirstSectionFrame) {
   EXPECT_TRUE(Centreline({line({1, 0, 0})}, {}).at(0).orientation.isApprox(Quaternion::Identity()));
-  // Projected onto the section.
+  // The given axis is projected onto the section.
   const Pose given = Centreline({line({1, 0, 0})}, Vector3(5, 0, 2)).at(0);
   EXPECT_LE((given.orientation * Vector3::UnitY() - Vector3::UnitZ()).norm(), 1e-14);
-  // Along the link's y axis another choice is made, reproducibly.
+  // For a line along the link's y axis, another axis is chosen, reproducibly.
   const Pose along_y = Centreline({line({0, 1, 0})}, {}).at(0);
   EXPECT_LE((along_y.orientation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-14);
   EXPECT_LE((along_y.orientation * Vector3::UnitY() - Vector3::UnitZ()).norm(), 1e-14);
 }
 
-// At a kink the section takes the smallest rotation between both tangents.
+// At a kink, the section makes the smallest rotation between both tangents.
 TEST(Centreline, KinkTurnsAboutTheNormalOfBothTangents) {
   const Centreline centreline({line({1, 0, 0}), line({1, 2, 0})}, {});
   const Pose before = centreline.at(1, true), after = centreline.at(1, false);
@@ -141,7 +141,7 @@ TEST(Centreline, Errors) {
   expect_error({line({1, 0, 0}), line({1, 0, 0})});
   expect_error({line({1, 0, 0}), line({0.5, 0, 0})});  // back on itself
   expect_error({arc({1, 0, 0}, {0.4, 1, 0})});         // not equidistant
-  expect_error({arc({2, 0, 0}, {1, 0, 0})});           // half a circle: which one?
+  expect_error({arc({2, 0, 0}, {1, 0, 0})});           // half a circle is ambiguous
   expect_error({arc({1, 0, 0}, {0, 0, 0})});           // no radius at the start
   expect_error({line({1, 0, 0})}, Vector3(1, 0, 0));   // y along the line
 }

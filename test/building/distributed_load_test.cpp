@@ -1,4 +1,4 @@
-// Loads along a part of a line.
+// Tests distributed loads on a part of a line.
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -23,7 +23,8 @@ SceneBuilder loaded(std::optional<double> from, std::optional<double> to, double
   return b;
 }
 
-// Clamp: force q (b - a), moment q (b^2 - a^2) / 2. Lumped at nodes by weights that are exact for lines.
+// Reactions of the clamp: force q (b - a), moment q (b^2 - a^2) / 2. The weights that lump the load at nodes are exact
+// for linear functions.
 TEST(DistributedLoad, ActsBetweenItsEnds) {
   const double q = 1e-4;
   for (const auto& [from, to] : {std::pair(0.0, 2.0), std::pair(0.35, 1.1), std::pair(1.2, 2.0)}) {

@@ -1,4 +1,4 @@
-// Springs, drives and servos where they cannot be.
+// Tests errors of springs, drives and servos that are impossible.
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -9,7 +9,7 @@ namespace {
 
 using scene::JointKind;
 
-/// A hinge, a ball and a hinge that follows the first one.
+/// A hinge, a ball joint, and a hinge that mimics the first one.
 SceneBuilder joints() {
   SceneBuilder b;
   for (const char* body : {"upper", "lower", "hand"}) b.body(body, 1, {0.1, 0, 0}, Matrix3::Identity());

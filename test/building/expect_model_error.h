@@ -1,5 +1,5 @@
 #pragma once
-/// What the model builder says about scenes that it refuses.
+/// Checks the errors of scenes that the model builder refuses.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace flexarm::test {
 
-/// The scene is refused with a message that contains `part`.
+/// Expects that the scene is refused with a message that contains `part`.
 inline void expect_error(const scene::SceneDescription& scene, const std::string& part) {
   try {
     build_model(scene);

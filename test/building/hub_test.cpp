@@ -1,4 +1,4 @@
-// Hubs: rigid inertia on the ends of beams.
+// Tests hubs: rigid inertia at the ends of beams.
 #include <gtest/gtest.h>
 
 #include "flexarm/simulation/simulation.h"
@@ -16,7 +16,7 @@ scene::HubDescription hub(scene::HubDescription::End end, double mass, const Vec
   return out;
 }
 
-/// A beam on a hinge about z, turned by its section and bent off its line.
+/// A beam on a hinge about z, whose section is rotated and whose line is bent.
 SceneBuilder arm() {
   SceneBuilder b;
   scene::BeamDescription& beam =
@@ -27,7 +27,7 @@ SceneBuilder arm() {
   return b;
 }
 
-// The same as rigid links fixed there.
+// Hubs act like rigid links that are fixed to the beam's ends.
 TEST(Hub, IsARigidLinkFixedToTheEnd) {
   SceneBuilder with_hubs = arm(), with_links = arm();
   const Vector3 inertia(0.02, 0.03, 0.04);

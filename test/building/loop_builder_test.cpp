@@ -1,4 +1,4 @@
-// Models with loops that flexible links close.
+// Tests models with loops.
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -12,8 +12,8 @@ namespace {
 
 using scene::JointKind;
 
-/// A crank (rigid), a coupler (flexible) and a rocker (rigid) that hangs from the world; hinges about y. The loop is
-/// closed between the coupler's tip, which is free, and the rocker's end.
+/// A rigid crank, a flexible coupler and a rigid rocker that hangs from the world, with hinges about y. The loop is
+/// closed between the coupler's free tip and the rocker's end.
 SceneBuilder crank_rocker() {
   SceneBuilder b;
   b.body("crank", 1, {0, 0, 0.2}, Matrix3::Identity());
@@ -38,7 +38,7 @@ const Coordinate& coordinate(const Model& model, const std::string& name) {
   return model.coordinates.front();
 }
 
-/// Every joint's master is known before its slave, and no node is a slave twice.
+/// Expects that every joint's master is known before its slave, and that no node is a slave twice.
 void expect_root_to_leaf(const Model& model) {
   std::vector<bool> is_slave(model.nodes.size(), false), is_known(model.nodes.size(), false);
   for (const JointMap& joint : model.joints) {
@@ -74,12 +74,12 @@ TEST(LoopBuilder, TipBecomesASlave) {
   EXPECT_EQ(hip.rotation, Vector3::UnitY());
 }
 
-// What stands on the tip moves with it: its joints come after the closing one, whatever the order in the scene.
+// Links on the tip move with it: their joints come after the closing joint, whatever the order in the scene.
 TEST(LoopBuilder, JointsAreSortedRootToLeaf) {
   SceneBuilder b = crank_rocker();
   b.body("lamp", 1, {0.1, 0, 0.1}, Matrix3::Identity());
   b.joint("lamp", JointKind::Universal, "coupler", "lamp", {1, 0, 0.3}).axis2 = Vector3::UnitX();
-  std::rotate(b.scene.joints.begin(), b.scene.joints.begin() + 2, b.scene.joints.end());  // the rocker comes last
+  std::rotate(b.scene.joints.begin(), b.scene.joints.begin() + 2, b.scene.joints.end());  // now the rocker is last
   std::swap(b.scene.joints[0], b.scene.joints[3]);
   close_loop(b, "hip", JointKind::Cylindrical, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0});
   const Model model = build_model(b.scene);
@@ -90,7 +90,7 @@ TEST(LoopBuilder, JointsAreSortedRootToLeaf) {
   EXPECT_EQ(model.joints[coordinate(model, "hip/1").joint].translation, Vector3::UnitY());
 }
 
-// A rigid body fixed to the tip, and one fixed to that, hold the tip's node.
+// If a rigid body is fixed to the tip, and another one to this body, they hold the tip's node.
 TEST(LoopBuilder, BodiesFixedToATipAreHeldByItsNode) {
   SceneBuilder b = crank_rocker();
   b.body("arm", 1, {0.1, 0, 0.1}, Matrix3::Identity());
@@ -110,7 +110,7 @@ TEST(LoopBuilder, BodiesFixedToATipAreHeldByItsNode) {
     expect_root_to_leaf(model);
     const JointMap& hip = model.joints[coordinate(model, "hip").joint];
     EXPECT_EQ(hip.master, model.links[3].frame.node);
-    // About the z axis of the joint's frame in the parent, backwards where the parent follows.
+    // The axis is the z axis of the joint's frame in the parent, reversed if the parent is the slave.
     const LinkFrame& parent = model.links[exchanged ? 5 : 3];
     ASSERT_EQ(parent.name, loop.parent);
     const Quaternion frame = model.nodes[parent.frame.node].orientation * parent.frame.offset.orientation;
@@ -142,7 +142,7 @@ TEST(LoopBuilder, VelocitiesOfTheStartAgreeWithTheLoop) {
     }
     const auto rate = [&](const char* name) { return rates[coordinate(model, name).joint]; };
     EXPECT_NEAR(rates[0], 2, 1e-14);
-    // Without a word on it, the tip goes on turning with its beam.
+    // Without an initial rate of the closing joint, the tip moves with its beam.
     const int j = coordinate(model, "hip").joint;
     const Vector6& tip = model.initial_velocity[model.joints[j].slave];
     EXPECT_NEAR(tip[4], given ? -3 : 2, 1e-14);
@@ -175,7 +175,7 @@ TEST(LoopBuilder, KindsThatCloseNothing) {
   }
 }
 
-// Travel across the axis cannot be turned round.
+// A travel across the axis cannot be inverted.
 TEST(LoopBuilder, PinionNeedsTheChildsEnd) {
   SceneBuilder b = crank_rocker();
   scene::JointDescription& loop =
@@ -193,7 +193,7 @@ TEST(LoopBuilder, PinionNeedsTheChildsEnd) {
 
 // ---------------------------------------------------------------- loops of rigid links
 
-/// The crank-rocker with a rigid coupler.
+/// The crank-rocker with a rigid coupler, whose loop is closed by multipliers.
 SceneBuilder rigid_crank_rocker(JointKind closing = JointKind::Continuous) {
   SceneBuilder b = crank_rocker();
   b.scene.links[2].beam.reset();
@@ -220,7 +220,7 @@ TEST(RigidLoopBuilder, KeepsIndependentConstraints) {
   }
 }
 
-/// Velocity of the point of a node that is at `arm` in its frame, at the start.
+/// Initial velocity of a node's point at `arm` in the node's frame.
 Vector3 velocity_at(const Model& model, int node, const Vector3& arm) {
   const Vector6& velocity = model.initial_velocity[node];
   return velocity.head<3>() + Vector3(velocity.tail<3>()).cross(model.nodes[node].rotation * arm);
@@ -230,23 +230,22 @@ TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   SceneBuilder b = rigid_crank_rocker();
   b.scene.initial_joints.push_back({"ground", 0, 2, {}});
   const Model model = build_model(b.scene);
-  // Crank's end at (0, 0.4), rocker's at (1, 0.6) from (1, 0), in the plane x, z: v = w x r about +y.
+  // The crank's end is at (0, 0.4), the rocker's at (1, 0.6) from (1, 0), in the x-z plane: v = w x r about +y.
   const LoopClosure& closure = model.closures[0];
   const Vector6 &rocker = model.initial_velocity[closure.parent], &coupler = model.initial_velocity[closure.child];
   EXPECT_NEAR(
       (velocity_at(model, closure.parent, closure.parent_arm) - velocity_at(model, closure.child, closure.child_arm))
           .norm(),
       0, 1e-12);
-  // v = (0.8, 0) + w (0.2, -1) = W (0.6, 0): the coupler turns with w = 0.
+  // v = (0.8, 0) + w (0.2, -1) = W (0.6, 0): the coupler does not rotate, w = 0.
   EXPECT_NEAR(coupler[4], 0, 1e-12);
   EXPECT_NEAR(rocker[4], 0.8 / 0.6, 1e-12);
   b.scene.initial_joints.push_back({"foot", 0, 1, {}});
-  expect_error(b.scene,
-               "<loop_joint> 'hip': the initial velocities of joints do not agree with the loop that it closes");
+  expect_error(b.scene, "<loop_joint> 'hip': the initial velocities of the joints contradict the loop that it closes");
 }
 
 TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
-  // A second linkage beside the first: on the world, where the loops have nothing in common, and on the first coupler.
+  // A second linkage, either on the world, where the loops have nothing in common, or on the first coupler.
   for (const char* base : {"world", "coupler"}) {
     SceneBuilder b = rigid_crank_rocker();
     const scene::SceneDescription one = b.scene;
@@ -266,14 +265,14 @@ TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
       EXPECT_EQ(model.closures[k].constraints.size(), 2u) << base << k;
       EXPECT_EQ(model.closures[k].implied.size(), 3u) << base << k;
     }
-    // As of one: v = (0.8, 0) + w (0.2, -1) = W (0.6, 0) for a crank that turns with 2; the coupler does not turn.
+    // As for one loop: v = (0.8, 0) + w (0.2, -1) = W (0.6, 0) if the crank's rate is 2. The coupler does not rotate.
     for (const auto& [closure, rate] : {std::pair(model.closures[0], 2.0), {model.closures[1], -1.0}}) {
       EXPECT_NEAR(model.initial_velocity[closure.child][4], 0, 1e-12) << base;
       EXPECT_NEAR(model.initial_velocity[closure.parent][4], rate * 0.4 / 0.6, 1e-12) << base;
     }
     b.scene.initial_joints.push_back({"foot2", 0, 1, {}});
     expect_error(b.scene,
-                 "<loop_joint> 'hip': the initial velocities of joints do not agree with the loop that it closes");
+                 "<loop_joint> 'hip': the initial velocities of the joints contradict the loop that it closes");
   }
 }
 
@@ -284,8 +283,8 @@ TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
     expect_error(b.scene, message);
   };
   const std::string no_coordinate =
-      "s.urdf:17: <loop_joint> 'hip': closes a loop of rigid links, where it has no "
-      "coordinate that could have damping, friction or limits";
+      "s.urdf:17: <loop_joint> 'hip': closes a loop of rigid links, so that it has no "
+      "coordinate and cannot have damping, friction or limits";
   expect([](auto& scene) { scene.loop_joints[0].damping = 0.1; }, no_coordinate);
   expect([](auto& scene) { scene.loop_joints[0].friction = 0.1; }, no_coordinate);
   expect([](auto& scene) { scene.loop_joints[0].limits = scene::JointLimits{-1, 1}; }, no_coordinate);
@@ -293,17 +292,17 @@ TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
       [](auto& scene) {
         scene.efforts.push_back({"hip", TimeFunction(1), {"s.urdf", 20}});
       },
-      "s.urdf:20: <effort>: joint 'hip' closes a loop of rigid links and has no coordinate there");
+      "s.urdf:20: <effort>: joint 'hip' closes a loop of rigid links and has no coordinate: name");
   expect(
       [](auto& scene) {
         scene.motions.push_back({"hip", TimeFunction::parse("t"), {"s.urdf", 20}});
       },
-      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+      "joint 'hip' closes a loop of rigid links and has no coordinate: name");
   expect(
       [](auto& scene) {
         scene.initial_joints.push_back({"hip", 0, 1, {"s.urdf", 20}});
       },
-      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+      "joint 'hip' closes a loop of rigid links and has no coordinate: name");
   expect(
       [](auto& scene) {
         scene.loop_joints[0].kind = JointKind::Screw;
@@ -324,11 +323,12 @@ TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
     }
   };
   expect([&](auto& scene) { stick(scene, 2); },
-         "<loop_joint> 'hip': more joints of the rigid loop that it closes may stick");
+         "<loop_joint> 'hip': in the rigid loop that it closes, more joints may stick");
   SceneBuilder one = rigid_crank_rocker();
   stick(one.scene, 1);
   EXPECT_NO_THROW(build_model(one.scene));
-  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; }, "leave the mechanism no motion");
+  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; },
+         "other loop joints the mechanism cannot move");
 }
 
 TEST(LoopBuilder, OutsideOfTheScene) {

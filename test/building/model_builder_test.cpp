@@ -1,4 +1,4 @@
-// Models built from scenes.
+// Tests models that are built from scenes.
 #include "building/model_builder.h"
 
 #include <gtest/gtest.h>
@@ -26,17 +26,17 @@ Pose link_pose(const Model& model, const std::string& name) {
 
 void expect_same(const Pose& a, const Pose& b, const std::string& what) {
   EXPECT_LE((a.position - b.position).norm(), 1e-13) << what;
-  EXPECT_LE(a.orientation.angularDistance(b.orientation), 1e-7) << what;  // its accuracy at zero
+  EXPECT_LE(a.orientation.angularDistance(b.orientation), 1e-7) << what;  // the angle's accuracy at zero
 }
 
-// Undeformed, with all coordinates at zero, links stand as URDF says: parent * origin of the joint.
+// Undeformed and with all coordinates at zero, links have the URDF poses: parent * origin of the joint.
 TEST(BuildModel, LinkFramesFollowTheOriginsOfJoints) {
   const scene::SceneDescription scene = every_joint_scene(false);
   const Model model = build_model(scene);
   for (const scene::JointDescription& joint : scene.joints) {
     if (joint.mimic && joint.mimic->offset != 0) continue;
     if (joint.name == "follow" || joint.parent == "follower") continue;
-    if (joint.slide && joint.profile) continue;  // beside the line, and where its cam has it
+    if (joint.slide && joint.profile) continue;  // beside the line, at the position of its cam profile
     Pose origin = joint.origin;
     if (joint.slide)  // on the first, straight piece of its parent's line
       origin.position =
@@ -45,7 +45,7 @@ TEST(BuildModel, LinkFramesFollowTheOriginsOfJoints) {
   }
 }
 
-// With initial positions: each joint by its own formula.
+// Initial positions of each kind of joint, against its formula.
 TEST(BuildModel, InitialPositions) {
   SceneBuilder builder;
   builder.body("a", 1, Vector3::UnitX(), Matrix3::Identity());
@@ -152,8 +152,7 @@ TEST(BuildModel, BodiesOfALinkAreOneCompositeAtItsCentre) {
   EXPECT_EQ(carriers, 1);
 }
 
-// What hangs on rigid links, loads and probes included, keeps its place although nodes are moved to the centres of
-// mass.
+// Nodes are moved to the centres of mass. Everything on rigid links, loads and probes included, keeps its position.
 TEST(BuildModel, RigidLinksHaveOneNodeAndOneJointEach) {
   RandomSource random(6);
   SceneBuilder builder;
@@ -200,7 +199,7 @@ TEST(BuildModel, BeamMassIsThatOfItsLength) {
               1e-12);
 }
 
-// Scheme and step are not the mechanism's: a model holds for all of them.
+// Scheme and step are not part of the mechanism, so a model is valid for all of them.
 TEST(BuildModel, DoesNotDependOnSchemeAndStep) {
   SceneBuilder builder;
   builder.body("block", 2, Vector3::Zero(), Matrix3::Identity());
@@ -232,7 +231,7 @@ TEST(BuildModel, LoadsAttachWithTheirOffset) {
   EXPECT_LE((node.position - link * Vector3(0.6, 0, 0)).norm(), 1e-14);
   EXPECT_LE((node.position + node.rotation * model.loads[0].arm - link * at).norm(), 1e-14);
   EXPECT_EQ(model.loads[0].force, force);
-  // A follower's force is given in the undeformed link frame.
+  // A follower force is given in the undeformed link frame.
   const NodePose& second = model.nodes[model.loads[1].node];
   EXPECT_LE((second.position - link * Vector3(1, 0.7, 0)).norm(), 1e-14);
   EXPECT_LE((second.rotation * model.loads[1].force - link.orientation * force).norm(), 1e-14);
@@ -257,7 +256,7 @@ TEST(BuildModel, DistributedLoadAddsUpToForceTimesLength) {
 
 // ---------------------------------------------------------------- initial velocities
 
-/// Node velocities against differences of the initial positions with every coordinate moved along its rate.
+/// Compares node velocities with differences of the initial positions, where every coordinate moves with its rate.
 void expect_velocities_of_coordinates(const scene::SceneDescription& scene) {
   const Model model = build_model(scene);
   std::vector<Eigen::VectorXd> unused;
@@ -278,7 +277,7 @@ void expect_velocities_of_coordinates(const scene::SceneDescription& scene) {
 
 TEST(InitialVelocity, OfEveryCoordinate) {
   scene::SceneDescription scene = every_joint_scene(true);
-  scene.loop_joints.clear();  // they hold at one position only
+  scene.loop_joints.clear();  // loops are closed at one position only
   scene.initial_joints = {{"shoulder", 0.3, 0.9, {}}, {"wrist/1", 0.4, -0.6, {}}, {"wrist/2", -0.8, 0.7, {}},
                           {"ball/ry", 0, 0.5, {}},    {"slider", 0.2, 0.4, {}},   {"roll/1", -0.1, 0.8, {}},
                           {"roll/2", 1.2, -0.9, {}},  {"flight/x", 0.3, 0.4, {}}, {"flight/rz", 0, 0.6, {}},
@@ -287,7 +286,7 @@ TEST(InitialVelocity, OfEveryCoordinate) {
   expect_velocities_of_coordinates(scene);
 }
 
-/// Chain of two hinges to a beam; `field` on the last link.
+/// A chain of two hinged links to a beam, with the initial field `field` on the last link.
 scene::SceneDescription planar_arm(const scene::InitialLink& field) {
   SceneBuilder builder;
   builder.body("arm", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
@@ -342,7 +341,7 @@ TEST(InitialVelocity, RefusedWhereJointsDoNotAllowIt) {
   }
 }
 
-// A mimicking joint moves with the rate that a field gives to the joint that it follows.
+// A mimicking joint has the rate that a field gives to the joint that it mimics.
 TEST(InitialVelocity, MimicFollowsAField) {
   SceneBuilder builder;
   builder.body("arm", 1, Vector3(0.5, 0, 0), Matrix3::Identity());

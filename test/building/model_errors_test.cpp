@@ -1,4 +1,4 @@
-// Scenes that are impossible as mechanisms.
+// Tests the errors of scenes that are impossible as mechanisms.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 using scene::JointKind;
 
-/// A hinged body "arm" on joint "hinge".
+/// A body "arm" on a joint "hinge".
 SceneBuilder arm() {
   SceneBuilder builder;
   builder.body("arm", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
@@ -32,7 +32,7 @@ TEST(ModelErrors, NothingOutboardHasInertia) {
   builder.joint("idle", JointKind::Revolute, "arm", "ghost");
   expect_error(builder.scene, "'idle' moves nothing");
   builder.scene.motions.push_back({"idle", TimeFunction(0.3), {}});
-  EXPECT_NO_THROW(build_model(builder.scene));  // driven, it needs none
+  EXPECT_NO_THROW(build_model(builder.scene));  // a driven joint needs no inertia
 }
 
 TEST(ModelErrors, AllMasslessJointsAreNamedAtOnce) {
@@ -58,14 +58,14 @@ TEST(ModelErrors, MasslessJointsAreHeldWhereTheyStartOnDemand) {
   builder.scene.lock_massless = true;
   const Model model = build_model(builder.scene);
   ASSERT_EQ(model.coordinates.size(), 2u);
-  EXPECT_LT(model.coordinates[0].motion, 0);  // the hinge moves the arm
+  EXPECT_LT(model.coordinates[0].motion, 0);  // the hinge moves the arm, so it is free
   const Coordinate& held = model.coordinates[1];
   ASSERT_GE(held.motion, 0);
   EXPECT_EQ(model.histories[held.motion](1.0), 0.3);
   EXPECT_EQ(model.initial_released[held.joint].displacement[0], 0.3);
   EXPECT_LT(held.effort, 0);
   EXPECT_FALSE(held.limit);
-  // Histories are differentiated by differences: round-off to the power 2/3.
+  // Functions of time are differentiated by differences: an error of round-off to the power 2/3.
   EXPECT_LE(model.initial_velocity[model.joints[held.joint].slave].norm(), 4e-11);
 }
 
@@ -84,7 +84,7 @@ TEST(ModelErrors, WhatFollowsAJointIsMovedByIt) {
   expect_error(builder.scene, "'crank' moves nothing");
   builder.scene.joints[0].mimic = scene::Mimic{"crank", 3, 0};
   const Model model = build_model(builder.scene);
-  // The stop of the crank feels the arm, J + m l^2 about the hinge, by the square of the ratio.
+  // The stop of the crank sees the arm's inertia J + m l^2 about the hinge, times the square of the ratio.
   SceneBuilder alone = arm();
   alone.scene.joints[0].limits = scene::JointLimits{-1, 1};
   const double inertia = build_model(alone.scene).coordinates[0].limit->inertia;
@@ -102,7 +102,7 @@ TEST(ModelErrors, PointMassOnTheAxis) {
   }
 }
 
-// Round-off is that of the mechanism, wherever it stands.
+// Round-off is relative to the mechanism's size, wherever it is.
 TEST(ModelErrors, DistanceFromTheWorldsOriginIsNoInertia) {
   for (const double distance : {1e4, 1e6, 1e9}) {
     const Vector3 far = distance * Vector3(0.6, -0.48, 0.64);
@@ -111,7 +111,7 @@ TEST(ModelErrors, DistanceFromTheWorldsOriginIsNoInertia) {
     builder.joint("knuckle", JointKind::Continuous, "world", "finger", far, Vector3::UnitZ());
     builder.scene.joints[0].limits = scene::JointLimits{-1, 1};
     const Model model = build_model(builder.scene);
-    // About the axis J + m d^2; places are known to the round-off of the distance.
+    // The inertia about the axis is J + m d^2. Positions have the round-off of the distance.
     const double round_off = std::numeric_limits<double>::epsilon() * distance / 0.01;
     EXPECT_NEAR(model.coordinates[0].limit->inertia, 2e-5, 4 * round_off * 2e-5) << distance;
     builder.scene.links.push_back({"ghost", {}, {}, {}});
@@ -131,7 +131,7 @@ TEST(ModelErrors, MeshesThatAreTooLarge) {
     builder.joint("clamp", JointKind::Fixed, "world", "rod");
     expect_error(builder.scene, "s.urdf:7: <beam> of link 'rod': its mesh would have ");
     expect_error(builder.scene, twist == 1e6 ? "952381 elements" : std::string(count) + " elements");
-    expect_error(builder.scene, ", and there is room for 100000");
+    expect_error(builder.scene, ", but at most 100000 are possible here");
   }
   SceneBuilder builder;
   for (const std::string name : {"a", "b", "c"}) {
@@ -139,7 +139,7 @@ TEST(ModelErrors, MeshesThatAreTooLarge) {
     builder.joint("clamp_" + name, JointKind::Fixed, "world", name);
   }
   expect_error(builder.scene,
-               "s.urdf:2: <beam> of link 'c': its mesh would have 99999 elements, and there is room for 0");
+               "s.urdf:2: <beam> of link 'c': its mesh would have 99999 elements, but at most 0 are possible here");
 }
 
 TEST(ModelErrors, SectionsBeyondNumbers) {

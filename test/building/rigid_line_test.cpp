@@ -1,4 +1,4 @@
-// Beams without elements: rigid bodies with the mass of the beam and what hangs on it.
+// Tests beams without elements: rigid bodies with the mass of the beam, with everything attached to it.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace {
 using scene::JointKind;
 using scene::SensorKind;
 
-/// Sums of a few hundred terms.
+/// Round-off of sums of a few hundred terms.
 constexpr double kRoundOff = 1e-13;
 
 scene::DirectSection plain() {
@@ -85,7 +85,7 @@ std::vector<Line> lines() {
            }}};
 }
 
-/// The line as it flies and turns, with as many elements; none: elements="auto".
+/// The line in free flight and rotation, with this number of elements; none: elements="auto".
 SceneBuilder flying(const Line& line, int order, std::optional<int> elements) {
   SceneBuilder b;
   b.scene.gravity = {0.5, -2, -9.81};
@@ -116,20 +116,20 @@ TEST_P(RigidLine, HasTheMassOfTheFlexibleOne) {
     const Energies a = flexible.energies(), b = rigid.energies();
     EXPECT_NEAR(b.potential, a.potential, kRoundOff * std::abs(a.potential));
     EXPECT_EQ(b.strain, 0);
-    // Where sections stand at angles to each other, what a scheme lumps at nodes is an approximation of its own.
+    // If sections are not parallel, the rotary inertia that a scheme lumps at nodes is an approximation.
     if (make_scheme(flexible_scene.scene.integrator).nodal_rotary_inertia && line.name != "straight") continue;
     EXPECT_LT((rigid.angular_momentum() - spin).norm(), kRoundOff * spin.norm());
     EXPECT_NEAR(b.kinetic, a.kinetic, kRoundOff * a.kinetic);
   }
 }
 
-// Its end and its line are where those of the flexible one are.
+// Its end and its line have the positions of the flexible line.
 TEST_P(RigidLine, HasTheShapeOfTheFlexibleOne) {
   const auto& [line, order] = GetParam();
   const Simulation flexible(flying(line, order, std::nullopt).scene), rigid(flying(line, order, 0).scene);
   const Pose a = flexible.tip_pose(1), b = rigid.tip_pose(1);
   EXPECT_LT((a.position - b.position).norm(), kRoundOff);
-  EXPECT_LT(a.orientation.angularDistance(b.orientation), 1e-7);  // an angle near 0 from its cosine
+  EXPECT_LT(a.orientation.angularDistance(b.orientation), 1e-7);  // angle near 0, computed from its cosine
   EXPECT_EQ(flexible.beam_radius(1), rigid.beam_radius(1));
   std::vector<BeamPoint> bent, stiff;
   flexible.beam_points(1, 0, bent);
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(Lines, RigidLine, ::testing::Combine(::testing::ValuesI
                            return std::get<0>(info.param).name + "_" + std::to_string(std::get<1>(info.param));
                          });
 
-/// Sum of what acts from outside, about the world's origin.
+/// Sum of all outside loads, about the world's origin.
 Wrench sum_of_loads(const Simulation& simulation) {
   std::vector<ActingWrench> wrenches;
   simulation.outside_wrenches(wrenches);
@@ -168,7 +168,7 @@ TEST(RigidLine, TakesTheResultantsOfWhatIsDistributed) {
       for (const auto& [from, to] :
            {std::pair<std::optional<double>, std::optional<double>>({}, {}), {0.2, {}}, {0.3, 0.7}}) {
         SCOPED_TRACE(line.name);
-        // Ends of loads are borders of elements in both.
+        // In both scenes, the ends of loads are borders of elements.
         SceneBuilder bent = flying(line, 2, std::nullopt), stiff = flying(line, 2, 0);
         for (SceneBuilder* b : {&bent, &stiff})
           b->scene.distributed_loads.push_back({"line", {3, -2, 1}, frame, TimeFunction(0.7), {}, from, to});
@@ -178,7 +178,7 @@ TEST(RigidLine, TakesTheResultantsOfWhatIsDistributed) {
       }
 }
 
-/// A double pendulum of which the first link is a straight uniform line, with all that may hang on it.
+/// A double pendulum whose first link is a straight uniform line, with everything that may be attached to it.
 SceneBuilder pendulum(bool as_body) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -186,7 +186,7 @@ SceneBuilder pendulum(bool as_body) {
   if (as_body) {
     const double mass = 0.7 * length, across = mass * length * length / 12;
     b.body("upper", mass, {0, 0, -0.5 * length},
-           // y of the section is the link's y, 1 along -z, 3 along x
+           // The section's y is the link's y; its 1 is along -z, its 3 along x.
            Vector3(across + 2e-3 * length, across + 1e-3 * length, 3e-3 * length).asDiagonal());
   } else {
     b.beam("upper", {{0, 0, -length}}, plain(), 0, 2).section_y = Vector3(0, 1, 0);
@@ -209,7 +209,7 @@ SceneBuilder pendulum(bool as_body) {
   return b;
 }
 
-// The same motion and the same measurements as of a body with these numbers.
+// Motion and measurements are those of a body with the same inertia.
 TEST(RigidLine, CarriesWhatABodyDoes) {
   for (const char* scheme : {"em", "em4", "m1", "newmark"}) {
     SceneBuilder line_scene = pendulum(false), body_scene = pendulum(true);
@@ -221,7 +221,7 @@ TEST(RigidLine, CarriesWhatABodyDoes) {
       ASSERT_TRUE(line.step().converged);
       ASSERT_TRUE(body.step().converged);
     }
-    // Round-off of the inertias, of a motion over a tenth of a second.
+    // Tolerance: round-off of the inertias, in a motion over a tenth of a second.
     EXPECT_LT((line.probe(0).pose.position - body.probe(0).pose.position).norm(), 1e-11) << scheme;
     EXPECT_LT((line.probe(0).velocity - body.probe(0).velocity).norm(), 1e-9) << scheme;
     for (std::size_t sensor = 0; sensor < 4; ++sensor)
@@ -230,7 +230,7 @@ TEST(RigidLine, CarriesWhatABodyDoes) {
   }
 }
 
-// Six joints: six unknowns, and of beams there is nothing that a step could go over.
+// Six joints give six unknowns, and no beam is left for a step to evaluate.
 TEST(RigidLine, LeavesNothingOfBeamsToAStep) {
   SceneBuilder b;
   std::string parent = "world";
@@ -291,7 +291,7 @@ TEST(RigidLine, IsRefusedWhereItWouldHaveToBend) {
                "s.urdf:7: <centerline> of link 'arm'");
 }
 
-// Without a joint it stands in the world.
+// Without a joint that moves it, it is fixed in the world.
 TEST(RigidLine, MayBeClamped) {
   SceneBuilder b;
   b.beam("post", {{0, 0, 1}}, plain(), 0, 2);

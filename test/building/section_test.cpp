@@ -1,4 +1,4 @@
-// Cross-sections against handbook values and independent formulas.
+// Tests cross-sections against handbook values and independent formulas.
 #include "building/section.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ void expect_diagonal(const SectionProperties& s) {
   EXPECT_EQ(largest(s.stiffness - Matrix6(s.stiffness.diagonal().asDiagonal())), 0);
   EXPECT_EQ(largest(s.inertia - Matrix3(s.inertia.diagonal().asDiagonal())), 0);
   EXPECT_TRUE(s.center_of_mass.isZero(0));
-  // Polar second moment = sum of both; the same for stiffness and inertia.
+  // The polar second moment is the sum of the other two, for stiffness and inertia.
   EXPECT_NEAR(s.inertia(0, 0), s.inertia(1, 1) + s.inertia(2, 2), 1e-12 * s.inertia(0, 0));
   EXPECT_NEAR(s.inertia(1, 1) / s.stiffness(4, 4), 7850 / 2.1e11, 1e-12 * 7850 / 2.1e11);
 }
@@ -53,10 +53,10 @@ TEST(Section, Tube) {
   EXPECT_NEAR(s.stiffness(5, 5), 2.1e11 * second, 1e-6);
   EXPECT_NEAR(s.stiffness(3, 3), kShearModulus * 2 * second, 1e-6);
   EXPECT_NEAR(shear_factor(of(scene::Tube{1.0, 0.9999}), 1), 0.531, 5e-4);  // Cowper, thin-walled, nu = 0.3
-  EXPECT_NEAR(shear_factor(of(scene::Tube{1.0, 0.0}), 1), 0.886, 5e-4);     // no hole: the circle's
+  EXPECT_NEAR(shear_factor(of(scene::Tube{1.0, 0.0}), 1), 0.886, 5e-4);     // without a hole: that of the circle
 }
 
-/// Saint-Venant's series for the torsion constant, long side a, short side b.
+/// Torsion constant by Saint-Venant's series, with the long side a and the short side b.
 double torsion_constant(double a, double b) {
   double sum = 0;
   for (int n = 1; n < 200; n += 2) sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
@@ -66,13 +66,13 @@ double torsion_constant(double a, double b) {
 TEST(Section, Rectangle) {
   const SectionProperties s = of(scene::Rectangle{0.02, 0.06});
   expect_diagonal(s);
-  EXPECT_NEAR(s.stiffness(4, 4), 2.1e11 * 0.02 * std::pow(0.06, 3) / 12, 1e-7);  // about y: height counts cubed
+  EXPECT_NEAR(s.stiffness(4, 4), 2.1e11 * 0.02 * std::pow(0.06, 3) / 12, 1e-7);  // about y: the height counts cubed
   EXPECT_NEAR(s.stiffness(5, 5), 2.1e11 * 0.06 * std::pow(0.02, 3) / 12, 1e-7);
   EXPECT_NEAR(shear_factor(s, 1), 0.850, 5e-4);
   EXPECT_NEAR(s.radius, std::hypot(0.01, 0.03), 1e-15);
   for (const double height : {0.02, 0.03, 0.06, 0.2, 2.0}) {
     const double exact = kShearModulus * torsion_constant(height, 0.02);
-    // The polynomial is good to half a percent.
+    // The polynomial has an error of half a percent.
     EXPECT_NEAR(of(scene::Rectangle{0.02, height}).stiffness(3, 3), exact, 5e-3 * exact) << height;
     EXPECT_NEAR(of(scene::Rectangle{height, 0.02}).stiffness(3, 3), exact, 5e-3 * exact) << height;
   }
@@ -90,11 +90,11 @@ TEST(Section, BoxTube) {
   const SectionProperties square = of(scene::BoxTube{0.1, 0.1, 1e-4});
   EXPECT_NEAR(shear_factor(square, 1), 20 * 1.3 / (48 + 39 * 0.3), 1e-12);  // Cowper, thin square tube
   EXPECT_NEAR(shear_factor(square, 1), shear_factor(square, 2), 1e-14);
-  // Turned by a quarter turn the factors change places; along the long walls more area carries the shear.
+  // A rotation by a quarter turn exchanges the factors. Along the long walls, more area carries the shear.
   const SectionProperties turned = of(scene::BoxTube{0.08, 0.04, 0.002});
   EXPECT_NEAR(shear_factor(s, 1), shear_factor(turned, 2), 1e-14);
   EXPECT_GT(shear_factor(s, 2), shear_factor(s, 1));
-  // Webs only: a rectangle.
+  // Without flanges, the box is a rectangle.
   EXPECT_NEAR(shear_factor(of(scene::BoxTube{0.002, 1, 0.001}), 2), 0.850, 5e-3);
 }
 
@@ -137,7 +137,8 @@ TEST(Section, ReferringToTheCentroidKeepsTheStrainEnergy) {
   const auto rotation = [&](double arc) {
     return Matrix3((so3::exp_quaternion(Vector3(arc * turning)) * start).toRotationMatrix());
   };
-  const auto strain = [&](const Vector3& in_section) {  // of the line through a point of the section; straight at first
+  // Strain of the line through a point of the section, straight at first
+  const auto strain = [&](const Vector3& in_section) {
     Vector6 out;
     const Vector3 tangent =
         difference([&](double arc) { return Vector3(arc * slope + arc * arc * turning + rotation(arc) * in_section); });
@@ -169,12 +170,12 @@ TEST(SectionLine, ShapesChangeByTheirLengths) {
     EXPECT_LE(largest(at.inertia - exact.inertia), 1e-14 * largest(exact.inertia)) << s;
     EXPECT_NEAR(at.mass, exact.mass, 1e-14 * exact.mass) << s;
   };
-  expect(0, 0.1, 0.04);  // before the first
+  expect(0, 0.1, 0.04);  // before the first station
   expect(0.5, 0.1, 0.04);
   expect(0.75, 0.1, 0.03);
   expect(1, 0.1, 0.02);
   expect(1.25, 0.125, 0.02);
-  expect(3, 0.2, 0.02);  // beyond the last
+  expect(3, 0.2, 0.02);  // beyond the last station
   EXPECT_EQ(line.largest_radius(), of(scene::Rectangle{0.2, 0.02}).radius);
 }
 

@@ -1,4 +1,5 @@
-// Starts at which accelerations would be undetermined, or a motion would: refused, with the joint and what to do.
+// Tests starts at which accelerations, or motions, would be undetermined. They are refused with the joint's name and
+// advice.
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -15,7 +16,7 @@ using scene::JointKind;
 
 const Vector3 kAcross = Vector3::UnitY();
 
-/// Links of 1 m without inertia on hinges about y, each bent by an angle against the one before, then a body.
+/// Massless links of 1 m on hinges about y, each bent by an angle relative to the one before, and a body at the end.
 SceneBuilder massless_chain(int links, double bend, const Matrix3& inertia, const Vector3& center) {
   SceneBuilder b;
   std::string parent = "world";
@@ -32,8 +33,8 @@ SceneBuilder massless_chain(int links, double bend, const Matrix3& inertia, cons
   return b;
 }
 
-// In a plane a body has three freedoms: on more hinges than that something moves that nothing resists. A point has two,
-// and one where the links are in line.
+// In a plane, a body has three degrees of freedom. With more hinges, some motion has no inertia. A point has two, or
+// one if the links are in line.
 TEST(SingularInertia, MasslessChains) {
   const Matrix3 body = 0.1 * Matrix3::Identity(), point = Matrix3::Zero();
   const Vector3 beside(0.5, 0, 0), end(1, 0, 0);
@@ -42,7 +43,7 @@ TEST(SingularInertia, MasslessChains) {
   for (const int links : {0, 1}) EXPECT_NO_THROW(build_model(massless_chain(links, 0.7, point, end).scene)) << links;
   EXPECT_NO_THROW(build_model(massless_chain(1, 0, body, beside).scene));
   for (const int links : {3, 4, 6})
-    expect_error(massless_chain(links, 0.5, body, beside).scene, "moves nothing at the start that the joints outboard");
+    expect_error(massless_chain(links, 0.5, body, beside).scene, "moves nothing at the start that the joints beyond");
   expect_error(massless_chain(2, 0.7, point, end).scene, "'hinge0' moves nothing at the start");
   expect_error(massless_chain(1, 0, point, end).scene, "'hinge0' moves nothing at the start");
   expect_error(massless_chain(1, 0, point, end).scene, "start elsewhere by <initial>");
@@ -69,7 +70,7 @@ TEST(SingularInertia, AxesInLineWithNothingBetween) {
   }
 }
 
-/// A body in two rings without inertia, about z, y and z.
+/// A body in two massless rings, with rotations about z, y and z.
 SceneBuilder gimbal(double nutation) {
   SceneBuilder b;
   b.scene.links.push_back({"outer", {}, {}, {}});
@@ -82,7 +83,7 @@ SceneBuilder gimbal(double nutation) {
   return b;
 }
 
-// The inertia of the first axis is the body's times sin^2 of the nutation.
+// The inertia about the first axis is the body's times sin^2 of the nutation.
 TEST(SingularInertia, GimbalInItsLock) {
   for (const double nutation : {1.0, 0.1, 1e-3, 1e-5}) EXPECT_NO_THROW(build_model(gimbal(nutation).scene)) << nutation;
   for (const double nutation : {0.0, 1e-8, kPi})
@@ -92,7 +93,7 @@ TEST(SingularInertia, GimbalInItsLock) {
 TEST(SingularInertia, IsHeldOnDemand) {
   SceneBuilder b = gimbal(0);
   b.scene.lock_massless = true;
-  for (const char* joint : {"first", "third"}) {  // what drives a joint that is held goes with it
+  for (const char* joint : {"first", "third"}) {  // the drives of a held joint are removed, too
     b.scene.springs.push_back({joint, 10});
     b.scene.servos.emplace_back().coordinate = joint;
     b.scene.efforts.push_back({joint, TimeFunction(1), {}});
@@ -104,7 +105,7 @@ TEST(SingularInertia, IsHeldOnDemand) {
   EXPECT_LT(model.coordinates[2].motion, 0);
 }
 
-// A rod's inertia about its own axis is small beside that about the others, however it lies.
+// A rod's inertia about its own axis is small relative to the others, in any direction of the rod.
 TEST(SingularInertia, ThinRodsSpin) {
   RandomSource random(5);
   for (const double slenderness : {1e3, 1e6, 1e8}) {
@@ -116,7 +117,7 @@ TEST(SingularInertia, ThinRodsSpin) {
   }
 }
 
-/// Two cranks on a line that carry a coupler parallel to it, all links turned by an angle from that line.
+/// Cranks on a line carry a coupler that is parallel to it. All links are rotated by `angle` from this line.
 SceneBuilder parallelogram(double angle, int rockers) {
   SceneBuilder b;
   const Quaternion turned(Eigen::AngleAxisd(-angle, kAcross));
@@ -143,7 +144,7 @@ SceneBuilder parallelogram(double angle, int rockers) {
   return b;
 }
 
-// A flat parallelogram may open as one or cross over. Rockers that repeat what others hold are no dead point.
+// A flat parallelogram may open as a parallelogram or as a crossed one. Redundant rockers are no dead point.
 TEST(DeadPoints, FlatParallelogram) {
   for (const int rockers : {2, 3, 5}) {
     expect_error(parallelogram(0, rockers).scene, "its loop starts at a dead point");

@@ -1,4 +1,4 @@
-// `flexarm simulate --accuracy`, and estimates of errors.
+// Tests `flexarm simulate --accuracy` and its estimates of errors by running the program.
 #include <cmath>
 #include <regex>
 
@@ -15,7 +15,7 @@ TEST(SimulateAccuracy, WritesTheRowsOfTheRunThatMetIt) {
   const Outcome outcome =
       shell("flexarm simulate " + scene + " --until 1 --accuracy 1e-4 --interval 0.1 --output " + csv);
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  expect_contains(outcome.output, "accuracy 0.0001 asked for, error ");
+  expect_contains(outcome.output, "accuracy 0.0001 requested, error ");
   Columns columns = read_csv(csv);
   ASSERT_EQ(columns["time"].size(), 11u);
   for (int i = 0; i <= 10; ++i) EXPECT_NEAR(columns["time"][i], 0.1 * i, 1e-12);
@@ -33,12 +33,13 @@ TEST(SimulateAccuracy, WritesTheRowsOfTheRunThatMetIt) {
     way = std::max(way, std::sqrt(moved));
   }
   EXPECT_LE(std::sqrt(sum) / way, 1e-4);
-  // The last row's estimate is that of its own time, not of the whole.
+  // The estimate in the last row is for the time of that row, not for the whole run.
   EXPECT_GT(columns["solver/error_estimate"][10], 0);
   EXPECT_LT(columns["solver/error_estimate"][10], 1e-3 * way);
 }
 
-// Where the scene leaves the scheme open another one than its own may have run: both lines of the report name that.
+// If the scene leaves the choice of the scheme open, the run may take another scheme than the scene's default. Both
+// lines of the report name the scheme that ran.
 TEST(SimulateAccuracy, NamesTheSchemeThatRan) {
   const Outcome outcome =
       shell("flexarm simulate " + example("rigid_double_pendulum") + " --until 1 --scheme auto --accuracy 1e-6");
@@ -49,7 +50,8 @@ TEST(SimulateAccuracy, NamesTheSchemeThatRan) {
   expect_contains(outcome.output, "after " + found[1].str() + " steps (" + found[2].str() + ", ");
 }
 
-// What turns freely by 1e-8 rad of a rod of one metre: errors are relative to more than that, which is said.
+// The rod of one metre turns freely by 1e-8 rad only. Errors are then relative to a larger length than the motion, and
+// the report says so.
 TEST(SimulateAccuracy, SaysWhereErrorsAreNotRelativeToTheWay) {
   const auto run = [](const std::string& velocity) {
     return shell("flexarm simulate --until 1 --accuracy 1e-3 " + scene_file(R"(<robot name="r"> <link name="world"/>
@@ -62,9 +64,9 @@ TEST(SimulateAccuracy, SaysWhereErrorsAreNotRelativeToTheWay) {
   };
   const Outcome rest = run("1e-8"), motion = run("1e-2");
   EXPECT_EQ(rest.status, 0) << rest.errors;
-  expect_contains(rest.output, " m (a millionth of the mechanism's size: points move by 1e-08 m); ");
+  expect_contains(rest.output, " m (a millionth of the mechanism's size, since points move by only 1e-08 m); ");
   EXPECT_EQ(motion.status, 0) << motion.errors;
-  expect_contains(motion.output, ", of 0.01 m; ");
+  expect_contains(motion.output, ", relative to 0.01 m; ");
 }
 
 TEST(SimulateAccuracy, SaysWhatWasReachedWhereItIsNotMet) {
@@ -79,10 +81,10 @@ TEST(SimulateAccuracy, RefusesWhatContradictsIt) {
   const std::string start = "flexarm simulate " + example("rigid_double_pendulum") + " --until 1 --accuracy ";
   for (const auto& [arguments, text] :
        {std::pair("2", "between 0 and 1"),
-        {"1e-3 --interval 0.3", "--interval: expected a whole part of the 1 s until --until"},
-        {"1e-3 --every 2", "--every: with an accuracy, rows are an --interval apart"},
+        {"1e-3 --interval 0.3", "--interval: expected the 1 s until --until divided by a whole number"},
+        {"1e-3 --every 2", "--every cannot be used with an accuracy: use --interval"},
         {"1e-3 --output -", "a file is expected"},
-        {"1e-3 --checkpoint x.state --checkpoint-every 0.1", "--checkpoint-every: a run with an accuracy"}}) {
+        {"1e-3 --checkpoint x.state --checkpoint-every 0.1", "--checkpoint-every cannot be used with an accuracy"}}) {
     const Outcome outcome = shell(start + arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     expect_contains(outcome.errors, text);
@@ -95,7 +97,7 @@ TEST(SimulateAccuracy, IsTakenFromTheSceneUnlessThereIsAStep) {
       <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
     <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
     <simulation> <integrator accuracy="1e-3"/> </simulation> </robot>)");
-  expect_contains(shell("flexarm simulate " + scene + " --until 1").output, "accuracy 0.001 asked for");
+  expect_contains(shell("flexarm simulate " + scene + " --until 1").output, "accuracy 0.001 requested");
   const std::string fixed = shell("flexarm simulate " + scene + " --until 1 --step 0.01").output;
   expect_contains(fixed, "after 100 steps");
   EXPECT_EQ(fixed.find("accuracy"), std::string::npos);

@@ -1,3 +1,4 @@
+/// Tests `flexarm bench`: runs its reports in their quick form, and checks files, messages and exit statuses.
 #include <filesystem>
 
 #include "cli/program.h"
@@ -21,7 +22,7 @@ TEST(Bench, HelpIsThatOfTheCommand) {
 }
 
 TEST(Bench, WithoutItsProgram) {
-  // A copy that stands alone.
+  // A copy of the program without its neighbour files, so that the program for benchmarks is missing.
   const std::string folder = temporary("alone");
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(program(), folder + "/flexarm", std::filesystem::copy_options::overwrite_existing);
@@ -39,12 +40,12 @@ TEST(Bench, PropertiesReport) {
     EXPECT_NE(report.find(row), std::string::npos) << row;
   const std::string data = read_file(folder + "/new/properties_dissipation.csv");
   EXPECT_EQ(data.substr(0, data.find('\n')), "scheme,omega_h,spectral_radius");
-  // The picture is drawn where matplotlib is; without it the report says nothing of a picture.
+  // The picture is drawn if matplotlib is installed. Otherwise the report does not mention a picture.
   const bool is_drawn = std::filesystem::exists(folder + "/new/properties_dissipation.png");
   EXPECT_EQ(report.find("properties_dissipation.png") != std::string::npos, is_drawn);
   EXPECT_EQ(outcome.errors.empty(), is_drawn) << outcome.errors;
 
-  // Only times differ from run to run.
+  // Only measured times differ from run to run.
   ASSERT_EQ(shell("flexarm bench properties --quick --output '" + folder + "/again'").status, 0);
   EXPECT_EQ(read_file(folder + "/again/properties_dissipation.csv"), data);
 }
@@ -133,14 +134,14 @@ TEST(Bench, AccuracyReport) {
                            "\nCornered: true error", "\n| forces: jump at sqrt(0.1) | cornered | 0.01 |",
                            "\n| speed: six_joint_arm | smooth | 0.01 |", "\n| random: arm 1, 2 joints |"})
     EXPECT_NE(report.find(line), std::string::npos) << line;
-  // The two lines of the summary, and the report's name.
-  EXPECT_EQ(outcome.output.find("Cornered: true error at most what was asked in "), 0u) << outcome.output;
-  expect_contains(outcome.output, "\nSmooth: true error at most what was asked in 100.0 % of 3 judged runs");
+  // The two lines of the summary are followed by the name of the report.
+  EXPECT_EQ(outcome.output.find("Cornered: true error at most the requested one in "), 0u) << outcome.output;
+  expect_contains(outcome.output, "\nSmooth: true error at most the requested one in 100.0 % of 3 judged runs");
   const std::string data = read_file(folder + "/accuracy.csv");
   EXPECT_EQ(data.substr(0, data.find("until")), "group,scene,corners,reference,");
   EXPECT_EQ(report.find("accuracy.png") != std::string::npos, std::filesystem::exists(folder + "/accuracy.png"));
 
-  // References that are not good are refused, and so is a name that no scene has.
+  // References of bad quality are refused, and so is a name that is not the name of a scene.
   const std::string command = "flexarm bench accuracy --quick --output '" + folder + "' ";
   std::filesystem::create_directories(folder + "/references");
   std::ofstream(folder + "/references/index.csv") << "file,group,name,cornered,until,intervals,disagreement,events,"
@@ -179,8 +180,8 @@ TEST(Bench, SignalsEndItAndLeaveTheReportOfBefore) {
   const std::string folder = temporary("interrupted");
   std::filesystem::remove_all(folder);
   for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
-    const Outcome outcome = shell("env --default-signal '" + program() + "' bench hard --group column --output '" +
-                                  folder + "' & sleep 1; kill -" + signal + " $!; wait $!");
+    const Outcome outcome = shell(interruptible_program() + "bench hard --group column --output '" + folder +
+                                  "' & sleep 1; kill -" + signal + " $!; wait $!");
     EXPECT_EQ(outcome.status, status);
     expect_contains(outcome.errors, "nothing is written");
     EXPECT_TRUE(std::filesystem::is_empty(folder));

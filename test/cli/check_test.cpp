@@ -1,3 +1,5 @@
+/// Tests `flexarm check` by running the program: the description of the model, its warnings, and its time for large
+/// scenes.
 #include <cmath>
 #include <filesystem>
 #include <regex>
@@ -31,7 +33,8 @@ TEST(Check, SaysWhichBeamsAreRigid) {
   EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm .* 0.84823 +rigid\n"))) << outcome.output;
 }
 
-// A line for each pair, whatever elements it has: boxes have points both ways, beams those of each of their elements.
+// A pair of bodies has one line, however many contact elements it has: boxes have points in both directions, and beams
+// have points for each of their elements.
 TEST(Check, HasALineForEachPairThatMayTouch) {
   const auto body = [](const std::string& name, const std::string& start) {
     return fmt::format(R"(<joint name="of_{0}" type="floating"> <parent link="world"/> <child link="{0}"/> {1} </joint>
@@ -74,7 +77,8 @@ TEST(Check, HasALineForEachJointWithPlay) {
 
 namespace {
 
-/// A flexible arm in a plane, with what drives its elbow.
+/// Returns the path of a scene: a flexible arm in a plane, with the given drive of its elbow, and more content for its
+/// beam.
 std::string driven_arm(const std::string& drive, const std::string& of_beam = "") {
   return scene_file(
       R"(<robot name="r"> <link name="world"/>
@@ -85,7 +89,7 @@ std::string driven_arm(const std::string& drive, const std::string& of_beam = ""
       drive + R"( <simulation> <gravity xyz="0 0 0"/> <effort joint="elbow" history="0"/> </simulation> </robot>)");
 }
 
-/// Largest speed of the elbow in the last tenth of a run, that may end early.
+/// Returns the largest speed of the elbow in the last tenth of a run, which may end early.
 double last_speed(const std::string& scene) {
   const std::string csv = temporary("servo.csv");
   shell("cd '" + testing::TempDir() + "' && flexarm simulate " + scene + " --until 1 --quiet --output " + csv);
@@ -97,8 +101,8 @@ double last_speed(const std::string& scene) {
 
 }  // namespace
 
-// A flexible link in place of a rigid one has no inertia where the drive acts: who damps it once a step from outside
-// has to know by how much he may. A hub or a rotor give it one.
+// A flexible link, unlike a rigid one, has no inertia at the very point where the drive acts. A controller outside the
+// program that damps once per step must therefore know how much damping is allowed. A hub or a rotor provides inertia.
 TEST(Check, SaysWhatResistsADriveWithinAStep) {
   const auto found = [](const std::string& scene) {
     const Outcome outcome = shell("flexarm check " + scene);
@@ -116,7 +120,8 @@ TEST(Check, SaysWhatResistsADriveWithinAStep) {
   EXPECT_NEAR(rotor[0] - bare[0], 1e-3, 0.01 * rotor[0]) << "three digits";
   EXPECT_TRUE(found(driven_arm("", R"(<hub at="start" mass="0.5" inertia="2e-2 4e-2 2e-2"/>)")).empty());
 
-  // A controller outside that damps by 0.3 of what is told calms a beam that has damping, by 1.1 of it shakes it.
+  // A controller outside the program calms a damped beam with 0.3 of the printed limit, and shakes it with 1.1 of the
+  // limit.
   const std::string damped = driven_arm("", R"(<damping stiffness_proportional="0.0001"/>)");
   const double limit = found(damped).at(1);
   for (const double part : {0.3, 1.1}) {
@@ -131,12 +136,43 @@ TEST(Check, SaysWhatResistsADriveWithinAStep) {
   }
 }
 
-// One warning, where the servo of the scene itself is affected, with a number that is enough.
+// If only topics drive a joint, its <limit effort> shows that something may drive it. Robots of rigid links have such
+// limits at every joint, and nothing bends there.
+TEST(Check, CountsJointsAtBeamsWithALimitedEffortAsDriven) {
+  const auto has_table = [](const std::string& of_joint, const std::string& of_arm, const std::string& more = "") {
+    const std::string shaft =
+        R"(<inertial> <mass value="1"/> <inertia ixx="1" iyy="1e-4" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial>)";
+    const Outcome outcome = shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="elbow" type="continuous"> <parent link="world"/> <child link="shaft"/> <axis xyz="0 1 0"/> )" +
+                                                                of_joint + R"(</joint> <link name="shaft">)" + shaft +
+                                                                "</link>" + of_arm + more + "</robot>"));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return std::regex_search(outcome.output, std::regex("\nelbow( +[0-9.e-]+){3}\n"));
+  };
+  const std::string limit = R"(<limit effort="100" velocity="1"/>)", unlimited = R"(<limit effort="0" velocity="1"/>)";
+  const std::string beam = R"(
+      <joint name="weld" type="fixed"> <parent link="shaft"/> <child link="arm"/> </joint>
+      <link name="arm"> <beam> <centerline> <line to="2 0 0"/> </centerline>
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>)";
+  EXPECT_TRUE(has_table(limit, beam));
+  EXPECT_FALSE(has_table(unlimited, beam));
+  EXPECT_FALSE(has_table("", beam));
+  // On the same axis a heavy body turns freely.
+  const std::string body = R"(
+      <joint name="wrist" type="continuous"> <parent link="shaft"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
+      <link name="arm"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+      </inertial> </link>)";
+  EXPECT_FALSE(has_table(limit, body));
+  EXPECT_TRUE(has_table("", body, R"(<simulation> <effort joint="elbow" history="0"/> </simulation>)"))
+      << "a joint that an <effort> names is always in the table";
+}
+
+// There is one warning if a servo of the scene itself is affected. The number in the warning is large enough.
 TEST(Check, WarnsOfSampledServosThatShakeABeam) {
   const auto servo = [](const std::string& drive) {
     return driven_arm(drive + R"(<servo joint="elbow" mode="velocity" kp="20" set_point="0.2" sample_time="0.004"/>)");
   };
-  const std::string bare = servo("");  // one file, which the next scene replaces
+  const std::string bare = servo("");  // the file is replaced by the next scene
   const Outcome shaken = shell("flexarm check " + bare);
   EXPECT_EQ(shaken.status, 0);
   std::smatch told;
@@ -155,7 +191,7 @@ TEST(Check, WarnsOfSampledServosThatShakeABeam) {
       << "it is not sampled";
 }
 
-// An effort that pushes the arm on its stop: the modes are those there.
+// An effort pushes the arm against its stop. The modes are those at that position.
 TEST(Check, SaysWhereTheArmIs) {
   const std::string scene = scene_file(R"(<robot name="r"> <link name="world"/>
       <joint name="elbow" type="revolute"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/>
@@ -213,7 +249,7 @@ TEST(Check, TakesEveryExample) {
     EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();
 }
 
-// Cubic algorithms would take hours, quadratic ones minutes.
+// Algorithms of cubic cost would take hours, and those of quadratic cost minutes.
 TEST(Check, LargeScenesTakeSeconds) {
   std::string chain = R"(<robot name="r"> <link name="l0"/>)";
   for (int i = 1; i < 10000; ++i)
@@ -228,7 +264,7 @@ TEST(Check, LargeScenesTakeSeconds) {
   for (const std::string& scene : {chain + "</robot>", rod}) {
     const Outcome outcome = shell("ulimit -v 2000000; timeout 30 '" + program() + "' check " + scene_file(scene));
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    expect_contains(outcome.output, "natural frequencies are left out");
+    expect_contains(outcome.output, "natural frequencies are not computed");
   }
   expect_contains(shell("timeout 30 '" + program() + "' static " + scene_file(chain + "</robot>")).errors,
                   "no equilibrium found");

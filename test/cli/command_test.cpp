@@ -1,15 +1,15 @@
-/// Commands and options as they are declared, and what becomes of words that are typed.
+/// Tests commands and options as they are declared in code: how typed words become values, errors, help and completion.
 
 #include "cli/command.h"
 
 #include "cli/exit_status.h"
 #include "cli/program.h"
-#include "math/near_names.h"
+#include "flexarm/math/near_names.h"
 
 namespace flexarm::cli {
 namespace {
 
-/// A command that has one of each kind.
+/// A command with one option of each kind.
 struct Declared {
   Declared() {
     command.argument("scene", scene, "scene file");
@@ -25,7 +25,7 @@ struct Declared {
     command.flag("--quiet", quiet, "says nothing").excludes("--law");
     command.runs([this] { return ++runs, kDone; });
   }
-  /// What is wrong; empty: it has run.
+  /// Returns the error message, or an empty text if the command has run.
   std::string run(const Words& words) {
     try {
       EXPECT_EQ(command.run(words), kDone);

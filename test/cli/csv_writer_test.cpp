@@ -1,3 +1,4 @@
+/// Tests the CSV writer: its rows are read back, also with a foreign locale, odd names and a disk that is full.
 #include "flexarm/simulation/csv_writer.h"
 
 #include <locale>

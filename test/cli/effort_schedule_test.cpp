@@ -1,3 +1,4 @@
+/// Tests schedules of efforts (JSON): what is read, what is refused, and the impulse that a schedule gives to a joint.
 #include "cli/effort_schedule.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ TEST(EffortPlayer, KeepsTheImpulseWhateverTheStep) {
     while (simulation.time() < 0.4) {
       player.command(simulation);
       ASSERT_TRUE(simulation.step().converged);
-      // `effort` is that of the motor alone: the joint's damper is not in it.
+      // `effort` is the effort of the motor alone, without the joint's damper.
       impulse += simulation.effort(roll) * step;
     }
     EXPECT_NEAR(impulse, 2 * 0.15 - 0.05, 1e-12) << step;

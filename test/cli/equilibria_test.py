@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Equilibria of arms whose first axis is vertical but for a small tilt, of loops, and of joints without any range:
-`equilibria_test.py PROGRAM`.
+"""Test equilibria that `flexarm static` finds: `equilibria_test.py PROGRAM`.
 
-Judged from outside: by the potential and the moments that forward kinematics in numpy gives, and by scipy's minimum of
-that potential from where flexarm has come to rest.
+The scenes are arms whose first axis is vertical or slightly tilted, loops, and joints whose limits are equal.
+Independent code is the judge: numpy computes potential and moments by forward kinematics, and scipy minimises the
+potential from the position that flexarm found.
 """
 
 import csv
@@ -33,7 +33,7 @@ LINK = """<joint name="{name}" type="{kind}"> <parent link="{parent}"/> <child l
 
 
 def arm(generator, tilt):
-    """A chain of four to six hinges, some of them with limits; the first axis is along z but for `tilt` [rad]."""
+    """Return a chain of four to six hinges, some with limits. The first axis is along z, tilted by `tilt` [rad]."""
     text, parent = "", "world"
     for k in range(generator.integers(4, 7)):
         place, centre = generator.uniform(-0.3, 0.3, 3), generator.uniform(-0.15, 0.15, 3)
@@ -50,14 +50,14 @@ def arm(generator, tilt):
 
 
 def potential(robot, names, values):
-    """[J]"""
+    """Return the potential energy [J]."""
     poses, _ = robot.place(dict(zip(names, values)))
     return -sum(mass * GRAVITY @ (poses[link][0] + poses[link][1] @ centre)
                 for link, (mass, centre) in robot.masses.items())
 
 
 def rest(path):
-    """{coordinate: position} of `flexarm static`, and what it said."""
+    """Run `flexarm static`. Return {coordinate: position} and the messages of the program."""
     with tempfile.TemporaryDirectory() as folder:
         table = os.path.join(folder, "rest.csv")
         run = subprocess.run([PROGRAM, "static", path, "--output", table], capture_output=True, text=True, check=False)
@@ -82,11 +82,12 @@ class Scenes(unittest.TestCase):
 
 class Arms(Scenes):
     def expect_minimum(self, positions):
-        """No moment is left, and no motion of joints that are not at a stop goes down, but by what round-off hides."""
+        """Check that no moment is left, and that no motion of joints away from their stops lowers the potential by more
+        than round-off."""
         robot, names = Robot(self.path), list(positions)
         start = np.array(list(positions.values()))
         joints = moments(self.path, positions)
-        # Stops give way: what stands beyond its limit stays there.
+        # Stops are elastic: a coordinate beyond its limit may stay at its value.
         bounds = [(min(joints[name][3], value), max(joints[name][4], value)) for name, value in positions.items()]
         best = scipy.optimize.minimize(lambda q: potential(robot, names, q), start, method="L-BFGS-B", bounds=bounds,
                                        options={"ftol": 0, "gtol": 1e-12})
@@ -109,32 +110,35 @@ class Arms(Scenes):
                     self.assertRegex(said, "nothing holds joints? 'j0'")
                 else:
                     self.assertNotRegex(said, "nothing holds joints? 'j0'")
-                    # The moment about the pan axis is weight times an arm times the tilt times the sine of its angle:
-                    # what is left of it is left of that, not of the weight.
+                    # The moment about the pan axis is weight * lever arm * tilt * sin(pan angle). The remaining moment
+                    # is judged against this small product, not against the weight.
                     moment, largest, *_ = moments(self.path, positions)["j0"]
                     self.assertLess(abs(moment), largest * max(1e-3 * tilt, 1e-13))
 
 
 def body(name, mass, centre):
-    return ('<link name="%s"> <inertial> <origin xyz="%r %r %r"/> <mass value="%r"/>\n'
+    return ('<link name="%s"> <inertial> <origin xyz="%.17g %.17g %.17g"/> <mass value="%.17g"/>\n'
             '  <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/> </inertial> </link>\n'
             % (name, *centre, mass))
 
 
 def hinge(name, parent, child, place=(0, 0, 0), axis="0 1 0", rest='type="continuous"', roll=0):
     kind, _, limit = rest.partition(" ")
-    return ('<joint name="%s" %s> <parent link="%s"/> <child link="%s"/> <origin xyz="%r %r %r" rpy="%r 0 0"/>'
+    return ('<joint name="%s" %s> <parent link="%s"/> <child link="%s"/> '
+            '<origin xyz="%.17g %.17g %.17g" rpy="%.17g 0 0"/>'
             ' <axis xyz="%s"/> %s </joint>\n' % (name, kind, parent, child, *place, roll, axis, limit))
 
 
 def pin(name, parent, child, place, in_child):
-    return ('<loop_joint name="%s" type="continuous"> <parent link="%s"/> <child link="%s"/> <origin xyz="%r 0 %r"/>'
-            ' <child_origin xyz="%r 0 0"/> <axis xyz="0 1 0"/> </loop_joint>\n'
+    return ('<loop_joint name="%s" type="continuous"> <parent link="%s"/> <child link="%s"/> '
+            '<origin xyz="%.17g 0 %.17g"/>'
+            ' <child_origin xyz="%.17g 0 0"/> <axis xyz="0 1 0"/> </loop_joint>\n'
             % (name, parent, child, *place, in_child))
 
 
 def meet(first, second, one, other, side):
-    """Where two bars of these lengths from two points in the x-z plane meet."""
+    """Return the point in the x-z plane where two bars of lengths `one` and `other`, from the points `first` and
+    `second`, meet."""
     way = second - first
     length = np.hypot(*way)
     along = (one**2 - other**2 + length**2) / (2 * length)
@@ -143,12 +147,13 @@ def meet(first, second, one, other, side):
 
 
 def angle(way):
-    """About y, from x."""
+    """Return the angle of a vector in the x-z plane about y, measured from x."""
     return np.arctan2(-way[1], way[0])
 
 
 class FourBar:
-    """A crank, a coupler and a rocker in the x-z plane of a base that turns about a vertical axis, or nearly so."""
+    """A crank, a coupler and a rocker in the x-z plane of a base. The base turns about an axis that is vertical or
+    slightly tilted."""
 
     CRANK, COUPLER, ROCKER, GROUND = 0.3, 0.7, 0.5, 0.8
 
@@ -164,7 +169,7 @@ class FourBar:
         self.text += hinge("c", "base", "rocker", (self.GROUND, 0, 0))
         self.text += pin("pin", "coupler", "rocker", (self.COUPLER, 0), self.ROCKER)
         self.text += "<simulation>" + "".join(
-            '<initial joint="%s" position="%r"/>' % entry
+            '<initial joint="%s" position="%.17g"/>' % entry
             for entry in (("a", crank), ("b", coupler - crank), ("c", rocker))) + "</simulation> </robot>"
 
     def places(self, crank):
@@ -173,7 +178,7 @@ class FourBar:
         return tip, meet(tip, ground, self.COUPLER, self.ROCKER, 1), ground
 
     def potential(self, pan, crank, tilt=0.0):
-        """[J]"""
+        """Return the potential energy [J]."""
         tip, elbow, ground = self.places(crank)
         centre = 1 * tip / 2 + 2 * (tip + elbow) / 2 + 1.5 * (elbow + ground) / 2 + 3 * np.array([0.2, 0.1])
         along, across, up = centre[0], 3 * 0.1, centre[1]
@@ -181,7 +186,7 @@ class FourBar:
 
 
 class Platform:
-    """A plate in the x-z plane that hangs on three legs of two bars each."""
+    """A plate in the x-z plane that hangs on three legs. Each leg has two bars."""
 
     BARS, MASSES = (0.5, 0.55), (0.5, 0.4)
     PIVOTS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.3]])
@@ -210,14 +215,14 @@ class Platform:
         self.text += "</simulation> </robot>"
 
     def legs(self, values):
-        """Knees and ends, shape (3, 2) each."""
+        """Return the positions of knees and of leg ends, each of shape (3, 2)."""
         way = lambda angles: np.stack([np.cos(angles), -np.sin(angles)], axis=1)  # noqa: E731
         hips, knees = np.array(values[0:6:2]), np.array(values[1:6:2])
         middle = self.PIVOTS + self.BARS[0] * way(hips)
         return middle, middle + self.BARS[1] * way(hips + knees)
 
     def potential(self, values):
-        """[J]"""
+        """Return the potential energy [J]."""
         middle, ends = self.legs(values)
         heights = self.MASSES[0] * (self.PIVOTS + middle)[:, 1] / 2 + self.MASSES[1] * (middle + ends)[:, 1] / 2
         return 9.81 * (heights.sum() + self.MASS * (ends[0] + self.turn(values) @ self.CENTRE)[1])
@@ -248,7 +253,7 @@ class Loops(Scenes):
             best = scipy.optimize.minimize_scalar(
                 lambda q: bars.potential(0, q), bounds=(positions["a"] - 0.5, positions["a"] + 0.5), method="bounded",
                 options={"xatol": 1e-12})
-            # What round-off hides of a minimum is the root of that of its potential.
+            # Round-off hides a minimum to within the square root of the round-off of the potential.
             self.assertAlmostEqual(best.x, positions["a"], delta=1e-6)
 
     def test_four_bar_under_a_tilted_axis(self):
@@ -282,7 +287,7 @@ class Loops(Scenes):
 
 
 class WithoutRange(Scenes):
-    """lower and upper are equal: their stops hold, whatever stands upright there."""
+    """Joints whose lower and upper limits are equal: the stops also hold a body that stands upright."""
 
     def test_upright(self):
         inertia, weight = 0.02 + 1 * 0.5**2, 9.81 * 0.5
@@ -290,14 +295,14 @@ class WithoutRange(Scenes):
             self.write("""<robot name="up"> <link name="world"/> <link name="bar"> <inertial> <origin xyz="0 0 0.5"/>
               <mass value="1"/> <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
               <joint name="a" type="revolute"> <parent link="world"/> <child link="bar"/> <axis xyz="0 1 0"/>
-              <limit lower="%r" upper="%r" effort="1" velocity="1"/> </joint>
-              <simulation> <integrator step="0.001"/> <initial joint="a" position="%r"/> </simulation> </robot>"""
+              <limit lower="%.17g" upper="%.17g" effort="1" velocity="1"/> </joint>
+              <simulation> <integrator step="0.001"/> <initial joint="a" position="%.17g"/> </simulation> </robot>"""
                        % (place, place, place))
             positions, said = rest(self.path)
             self.assertIsNotNone(positions, said)
             self.assertNotRegex(said, "stable|nothing holds")
-            # The documented law of stops (docs/notes/stops.md 2): touched lightly they make an oscillator that swings
-            # once in twenty steps, and 1e-4 rad is what they give way at most where there is no range.
+            # The documented law of stops (docs/notes/stops.md 2): a stop that is barely touched forms an oscillator
+            # with a period of twenty steps. A stop without range gives way by at most 1e-4 rad.
             swing, give = np.pi / 0.01, 1e-4
 
             def left(depth, swing=swing, give=give, place=place):

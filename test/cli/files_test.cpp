@@ -1,4 +1,5 @@
-/// Files that `simulate` writes and reads: whole or as before, whatever happens, and an exit status that says so.
+/// Tests the files that the program reads and writes. A result file is complete or stays as before, whatever happens,
+/// and the exit status says which.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A rod on a hinge whose Newton iteration is not given enough iterations.
+/// A rod on a hinge. Its Newton iteration gets too few iterations to converge.
 const char* const kFailingScene = R"(<robot name="r">
   <link name="world"/>
   <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
@@ -26,9 +27,10 @@ const char* const kFailingScene = R"(<robot name="r">
 const std::string kEndless = "simulate " + example("rigid_double_pendulum") + " --until 1e9 ";
 const std::string kShort = "flexarm simulate " + example("rigid_double_pendulum") + " --until 0.01 --quiet ";
 
-/// Of a run that a shell's command ends a second after its start, the shell waiting for it.
+/// Runs the program in the background and ends it after a second by a shell command. The shell waits for it; its
+/// outcome is returned.
 Outcome ended_by(const std::string& arguments, const std::string& command) {
-  return shell("env --default-signal '" + program() + "' " + arguments + " & sleep 1; " + command + "; wait $!");
+  return shell(interruptible_program() + arguments + " & sleep 1; " + command + "; wait $!");
 }
 
 }  // namespace
@@ -67,7 +69,8 @@ TEST(Simulate, FailureKeepsAndNamesTheLastGoodState) {
 }
 
 TEST(Simulate, RecoveriesAndDoubtsAreSaid) {
-  // A free hinge that turns by 1.5 rad a step, of which a sub-step may make half.
+  // A free hinge that turns by more than the allowed angle in a step. A step has 2.5 rad in the beginning, and half
+  // steps are allowed.
   std::string text = kFailingScene;
   text.replace(
       text.find("<integrator"), std::string::npos,
@@ -76,7 +79,7 @@ TEST(Simulate, RecoveriesAndDoubtsAreSaid) {
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   expect_contains(outcome.output, " halvings (down to 1/2 of a step)");
   expect_contains(outcome.errors, "flexarm: warning: link 'rod'");
-  expect_contains(outcome.errors, "lags by ");
+  expect_contains(outcome.errors, "too slow there");
   EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --until 0.1 --on-failure dissipate").status, 0);
   EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --on-failure hope").status, 2);
   EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --scheme m1 --on-failure dissipate").status, 2);
@@ -85,7 +88,7 @@ TEST(Simulate, RecoveriesAndDoubtsAreSaid) {
 TEST(Simulate, CheckpointsOnTheWay) {
   const std::string state = temporary("state"), way = temporary("way"), csv = temporary("out.csv");
   fs::remove(way);
-  // Killed without notice, it leaves the state of the last checkpoint, from which it goes on.
+  // The run is killed without notice. It leaves the state of the last checkpoint, from which another run continues.
   const Outcome outcome = ended_by(kEndless + "--checkpoint-every 0.5 --checkpoint " + way, "kill -KILL $!");
   EXPECT_NE(outcome.status, 0);
   const Outcome resumed = shell(kShort + "--resume " + way + " --output " + csv);
@@ -93,7 +96,7 @@ TEST(Simulate, CheckpointsOnTheWay) {
   const double kept = read_csv(csv)["time"].at(0);
   EXPECT_GT(kept, 0);
   EXPECT_NEAR(std::remainder(kept, 0.5), 0, 1e-9 * kept);
-  // Checkpoints on the way change nothing.
+  // Checkpoints during a run do not change the results.
   ASSERT_EQ(
       shell(kShort + "--checkpoint " + state + "; " + kShort + "--checkpoint-every 0.003 --checkpoint " + way).status,
       0);
@@ -104,8 +107,8 @@ TEST(Simulate, CheckpointsOnTheWay) {
 
 TEST(Simulate, PlaceOfTheCheckpointIsTriedBeforeTheRun) {
   for (const auto& [place, told] : {std::pair<std::string, std::string>("/no/such/state", "No such file or directory"),
-                                    {"/dev/null", "it is no regular file"},
-                                    {testing::TempDir(), "it is no regular file"}}) {
+                                    {"/dev/null", "it is not a regular file"},
+                                    {testing::TempDir(), "it is not a regular file"}}) {
     const Outcome outcome = shell("'" + program() + "' " + kEndless + "--checkpoint " + place);
     EXPECT_EQ(outcome.status, 2);
     expect_contains(outcome.errors, "checkpoint '" + place + "' cannot be written: " + told);
@@ -116,7 +119,7 @@ TEST(Simulate, StatesAreNoStreams) {
   for (const std::string option : {"--checkpoint", "--resume"}) {
     const Outcome outcome = shell(kShort + option + " -");
     EXPECT_EQ(outcome.status, 2);
-    expect_contains(outcome.errors, option + ": states are files");
+    expect_contains(outcome.errors, option + ": a state must be a file");
   }
 }
 
@@ -149,7 +152,7 @@ TEST(Simulate, SignalsLeaveResultsAndStateAndAStatus) {
                                      "kill -" + std::string(signal) + " $!");
     EXPECT_EQ(outcome.status, status);
     expect_contains(outcome.errors, "interrupted at t = ");
-    Columns columns = read_csv(csv);  // checks the number of fields of every row
+    Columns columns = read_csv(csv);  // also checks the number of fields of every row
     EXPECT_GT(columns["time"].back(), 0);
     EXPECT_EQ(read_file(csv).back(), '\n');
     EXPECT_EQ(shell(kShort + "--resume " + state).status, 0);
@@ -162,7 +165,8 @@ TEST(Simulate, IgnoredSignalsStayIgnored) {
   EXPECT_EQ(outcome.status, 143) << "not 129";
 }
 
-// A row is one write, which Linux ends between two pages if a signal kills the program then: once in sixty kills.
+// A row is one call of write. If a signal kills the program meanwhile, Linux may cut the write between two pages: once
+// in sixty kills.
 TEST(Simulate, KilledRunLeavesWholeRows) {
   const std::string csv = temporary("out.csv");
   ended_by(kEndless + "--output " + csv, "kill -KILL $!");
@@ -227,7 +231,7 @@ TEST(Static, OutputIsTriedBeforeTheSolution) {
   const Outcome full = shell(command + "/dev/full");
   EXPECT_EQ(full.status, 1);
   expect_contains(full.errors, "cannot write '/dev/full': No space left on device");
-  // Where nothing is found, nothing is left: a moment turns the rod on and on.
+  // Without a solution no file is left: a constant moment turns the rod forever.
   std::string text = kFailingScene;
   text.replace(text.find("<integrator"), std::string::npos,
                R"(<gravity xyz="0 0 0"/> <load link="rod" at="0 0 0" moment="0 1 0"/> </simulation> </robot>)");
@@ -236,7 +240,7 @@ TEST(Static, OutputIsTriedBeforeTheSolution) {
 }
 
 TEST(Analyses, EndWithTheStatusesOfSignals) {
-  // A scene whose modes take long; statics of it as well.
+  // A scene whose modes and statics take long.
   std::string text = R"(<robot name="r"> <link name="world"/>
     <joint name="clamp" type="fixed"> <parent link="world"/> <child link="arm"/> </joint>
     <link name="arm"> <beam elements="20000"> <centerline> <line to="1 0 0"/> </centerline> <circle radius="0.01"/>

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Files of `flexarm linearise`, read by scipy: `linearise_test.py PROGRAM`."""
+"""Test files of `flexarm linearise`, read by scipy: `linearise_test.py PROGRAM`."""
 
 import csv
 import json
@@ -26,7 +26,7 @@ BAR = """<robot name="bar"> <parameter name="speed" value="0.5"/> <link name="wo
     <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
   <simulation> <gravity xyz="0 0 0"/> <initial joint="hinge" velocity="${speed}"/>
     <integrator scheme="em" step="0.001" tolerance="1e-10"/> </simulation> </robot>"""
-INERTIA, WEIGHT = 0.1 + 2 * 0.5**2, 2 * 9.81 * 0.5  # about the hinge [kg m^2], times the arm [N m]
+INERTIA, WEIGHT = 0.1 + 2 * 0.5**2, 2 * 9.81 * 0.5  # about the hinge [kg m^2]; weight times lever arm [N m]
 NAMES = ("states", "inputs", "outputs")
 MATRICES = ("A", "B", "C", "D")
 
@@ -59,7 +59,7 @@ class Linearise(unittest.TestCase):
         row = [-WEIGHT / INERTIA, -0.3 / INERTIA]
         numpy.testing.assert_allclose(model["A"], [[0, 1], row], rtol=1e-12)
         numpy.testing.assert_allclose(model["B"], [[0], [1 / INERTIA]], rtol=1e-12)
-        # The tip is 1 m below the hinge, about y.
+        # The tip is 1 m below the hinge; the hinge turns about y.
         expected = [[1, 0], [0, -1], [-row[0], -row[1]]]
         numpy.testing.assert_allclose(model["C"], expected, rtol=1e-12, atol=1e-12)
         numpy.testing.assert_allclose(model["D"], [[0], [0], [-1 / INERTIA]], rtol=1e-12)
@@ -95,7 +95,7 @@ class Linearise(unittest.TestCase):
         by_angle = numpy.array(model["states_by_parameters"])[:, 0]
         transition = numpy.array(model["transition"])
         numpy.testing.assert_allclose(transition[:, 0], by_angle, rtol=1e-6)
-        # Trapezoidal steps of a small motion would keep areas but for the damping.
+        # For a small motion, steps of the trapezoidal rule preserve areas except for the damping.
         self.assertAlmostEqual(numpy.linalg.det(transition), numpy.exp(-0.3 / INERTIA * 0.5), delta=1e-3)
         output = model["outputs"].index("position:hinge")
         by_parameters = model["outputs_by_parameters"][output]
@@ -108,7 +108,7 @@ class Linearise(unittest.TestCase):
             scipy.io.loadmat(path)["states_by_parameters"], model["states_by_parameters"], rtol=1e-9)
 
     def test_events_that_a_run_came_over(self):
-        """A bar that comes to its stop: what is doubtful is told, and files list all."""
+        """Check a bar that reaches its stop: doubtful events are printed, and files list all events."""
         for scheme, is_doubtful in (("em", False), ("newmark", True)):
             command = [PROGRAM, "linearise", self.path("bar.urdf"), "--time", "0.6", "--sensitivities", "speed",
                        "--output"]
@@ -119,13 +119,13 @@ class Linearise(unittest.TestCase):
                 files[name] = subprocess.run(command + [self.path(name)], stdout=subprocess.PIPE,
                                              stderr=subprocess.PIPE, universal_newlines=True, check=False)
                 self.assertEqual(files[name].returncode, 0, files[name].stderr)
-            warning = "sensitivities behind t = 0.2"
+            warning = "sensitivities after t = 0.2"
             self.assertEqual(warning in files["model.json"].stderr, is_doubtful, files["model.json"].stderr)
             with open(self.path("model.json"), encoding="utf-8") as file:
                 events = json.load(file)["events"]
             self.assertEqual([event["what"] for event in events], ["touches its stop", "leaves its stop"])
             self.assertEqual({event["joint"] for event in events}, {"hinge"})
-            # It comes to the stop at 0.1 / 0.5 s.
+            # It reaches the stop at 0.1 / 0.5 s.
             self.assertAlmostEqual(events[0]["time"], 0.2, delta=1e-6)
             self.assertEqual(bool(events[0]["doubt"]), is_doubtful)
             matlab = scipy.io.loadmat(self.path("model.mat"))
@@ -161,7 +161,7 @@ class Linearise(unittest.TestCase):
         numpy.testing.assert_array_equal([[float(number) for number in row[1:]] for row in rows], whole)
 
     def gain(self, frequency):
-        """Of the angle by the effort."""
+        """Return the frequency response of the angle to the effort, by the formula."""
         rate = 2j * numpy.pi * frequency
         return 1 / (INERTIA * rate**2 + 0.3 * rate + WEIGHT)
 
@@ -219,8 +219,8 @@ class Linearise(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         values = result.stdout.split("Hankel singular values: ")[1].splitlines()
         left_out = float(values[0].split("; left out: ")[1])
-        # Four digits are printed.
-        self.assertAlmostEqual(float(values[1].split("off by ")[1].split()[0]) / (2 * left_out), 1, delta=1e-3)
+        # The program prints four digits.
+        self.assertAlmostEqual(float(values[1].split("at most ")[1].split()[0]) / (2 * left_out), 1, delta=1e-3)
         self.assertEqual(len(self.model("--reduce", "1")["A"]), 1)
         self.assertEqual(self.run_program("--reduce", "3").returncode, 2)
 
@@ -229,7 +229,7 @@ class Linearise(unittest.TestCase):
         frequency, ratio = text[2].split()[:2]
         size = numpy.sqrt(WEIGHT / INERTIA)
         expected = 0.3 / INERTIA / 2 / size
-        # Seven and four digits are printed.
+        # The program prints seven and four digits.
         self.assertAlmostEqual(float(frequency) / (size * numpy.sqrt(1 - expected**2) / (2 * numpy.pi)), 1, delta=1e-6)
         self.assertAlmostEqual(float(ratio) / expected, 1, delta=1e-3)
 

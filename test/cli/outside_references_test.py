@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The references of `flexarm bench accuracy` are right: closed forms, and equations that are written once more.
+"""Test the references of `flexarm bench accuracy` against closed forms and against equations that are derived
+independently.
 
 outside_references_test.py [PROGRAM]
 """
@@ -24,7 +25,7 @@ from elements import restitution_of  # noqa: E402
 from mechanism import Refused  # noqa: E402
 from motion import Motion  # noqa: E402
 
-CLOSE = 1e-10  # of references, whose tolerances are 1e-12
+CLOSE = 1e-10  # tolerance for the references, which have a tolerance of 1e-12
 
 
 def run(text, until, intervals=20):
@@ -34,7 +35,7 @@ def run(text, until, intervals=20):
 
 class TimeFunctions(unittest.TestCase):
     def test_derivatives(self):
-        """Against differences, away from corners."""
+        """Compare derivatives with differences, away from corners."""
         gap = 1e-4
         for text in ("2*sin(3*t) - t^2/(1 + t)", "exp(-t)*cos(_pi*t)", "sqrt(1 + t)*tanh(t)", "max(t, 0.2)^3",
                      "abs(t - 2)",
@@ -58,26 +59,26 @@ class TimeFunctions(unittest.TestCase):
 
 class ClosedForms(unittest.TestCase):
     def test_jump(self):
-        """I = 1, +3 until b, then -3: the angle is 3 b t - 1.5 b^2 - 1.5 (t - b)^2 behind it."""
+        """Jump of an effort: I = 1, +3 until b, then -3. After b the angle is 3 b t - 1.5 b^2 - 1.5 (t - b)^2."""
         times, points = run(scenes.hinge(scenes.effort("h", "t < sqrt(0.1) ? 3 : -3"), inertia=1.0), 1.0)
         b = math.sqrt(0.1)
         angle = np.where(times < b, 1.5 * times ** 2, 1.5 * b ** 2 + 3 * b * (times - b) - 1.5 * (times - b) ** 2)
         np.testing.assert_allclose(points[:, 0], np.column_stack([np.cos(angle), np.sin(angle), 0 * angle]), atol=CLOSE)
 
     def test_slide_comes_to_rest(self):
-        """v - 0.2 g t, until that is zero."""
+        """The velocity is v - 0.2 g t until it is zero."""
         times, points = run(scenes.cart(scenes.initial("s", 0.0, 2.5), scenes.coulomb(0.0, 0.2)), 2.0)
         stop = 2.5 / (0.2 * 9.81)
         t = np.minimum(times, stop)
         np.testing.assert_allclose(points[:, 0, 0], 2.5 * t - 0.1 * 9.81 * t ** 2, atol=CLOSE)
 
     def test_sticks_until_it_is_pushed_hard(self):
-        """Effort 2 t, friction 1: it begins at 0.5 s with the acceleration 2 (t - 0.5)/m."""
+        """Effort 2 t, friction 1: the cart starts at 0.5 s with the acceleration 2 (t - 0.5)/m."""
         times, points = run(scenes.cart(scenes.effort("s", "2*t"), scenes.coulomb(1.0), mass=1.3), 1.5)
         np.testing.assert_allclose(points[:, 0, 0], np.maximum(times - 0.5, 0) ** 3 / 3.9, atol=CLOSE)
 
     def test_restitution_is_that_of_the_scene_at_any_speed(self):
-        """Without other forces: the speed between stops falls by the restitution with each hit."""
+        """Without other forces, each impact at a stop multiplies the speed by the restitution."""
         for speed in (0.1, 2.0, 20.0):
             for restitution in (0.05, 0.1, 0.2, 0.3, 0.8):
                 times, points = run(scenes.cart(scenes.initial("s", 0.0, speed), scenes.limit(-9.0, 0.5, restitution)),
@@ -89,14 +90,14 @@ class ClosedForms(unittest.TestCase):
         self.assertAlmostEqual(restitution_of(0.497239), 0.3, delta=1e-6)
 
     def test_screw(self):
-        """(I + m p^2) u'' = effort - m g p."""
+        """Equation of motion: (I + m p^2) u'' = effort - m g p."""
         times, points = run(scenes.screw(scenes.effort("u", "1.5")), 1.0)
         u = 0.5 * times ** 2 * (1.5 - 1.2 * 9.81 * 0.05) / (0.02 + 1.2 * 0.05 ** 2)
         np.testing.assert_allclose(points[:, 0], np.column_stack([0.1 * np.cos(u), 0.1 * np.sin(u), 0.05 * u]),
                                    atol=CLOSE)
 
     def test_elastic_gear(self):
-        """A constant effort on the rotor: the mean motion, and a vibration of the gear at k (1/I + 1/J)."""
+        """A constant effort acts on the rotor: mean motion plus a vibration of the gear with ω² = k (1/I + 1/J)."""
         drive = '<drive joint="h" gear="60" rotor_inertia="3e-5" stiffness="2000"/>'
         times, points = run(scenes.hinge(scenes.effort("h", "2"), rest=drive), 1.0)
         inertia, rotor, k = 0.35, 3600 * 3e-5, 2000.0
@@ -106,7 +107,7 @@ class ClosedForms(unittest.TestCase):
         np.testing.assert_allclose(points[:, 0, 1], np.sin(angle), atol=CLOSE)
 
     def test_play_is_crossed_freely(self):
-        """The rotor alone moves by half of the play before the link does."""
+        """At first the rotor moves alone, by half of the play."""
         drive = '<drive joint="h" gear="60" rotor_inertia="3e-5" stiffness="2000" damping="1" backlash="0.1"/>'
         times, points = run(scenes.hinge(scenes.effort("h", "2"), rest=drive), 0.1, 1000)
         touch = math.sqrt(2 * 0.05 * 3600 * 3e-5 / 2)
@@ -115,7 +116,7 @@ class ClosedForms(unittest.TestCase):
         self.assertTrue(np.all(moved[times > touch + 1e-3]))
 
     def test_sampled_servo(self):
-        """A double integrator under held efforts: an exact recursion."""
+        """A double integrator under efforts that are held between samples: an exact recursion."""
         servo = '<servo joint="h" mode="position" kp="30" kd="3" set_point="0.5" sample_time="0.02" delay="0.007"/>'
         times, points = run(scenes.hinge("", rest=servo, inertia=0.35), 2.0, 100)
         q, v, last, held, found = 0.0, 0.0, 0.0, 0.0, [0.0]
@@ -129,18 +130,18 @@ class ClosedForms(unittest.TestCase):
         np.testing.assert_allclose(points[:, 0, 1], np.sin(found), atol=CLOSE)
 
     def test_kink_of_a_motion_is_a_blow(self):
-        """The cart starts with v at once: the pendulum, hanging at rest, gets the rate -m l v/(I + m l^2)."""
+        """The cart suddenly moves with speed v. The pendulum, which hangs at rest, gets the rate -m l v/(I + m l^2)."""
         text = scenes.carried_pendulum(scenes.motion("s", "0.3*max(0, t - 0.25)")).replace("-9.81", "-0.0")
         times, points = run(text, 0.5, 10)
         angle = -0.8 * 0.4 * 0.3 / (0.03 + 0.8 * 0.16) * np.maximum(times - 0.25, 0)
         cart = 0.3 * np.maximum(times - 0.25, 0)
-        # Without gravity the rate stays: the cart goes on at a constant speed. It turns positive about z from -y.
+        # Without gravity the rate is constant, and so is the speed of the cart. The angle counts about z from -y.
         np.testing.assert_allclose(points[:, 0, 0], cart + 0.8 * np.sin(angle), atol=CLOSE)
 
 
 class OtherEquations(unittest.TestCase):
     def test_double_pendulum(self):
-        """Lagrange's equations in absolute angles from -y."""
+        """Compare with Lagrange's equations in absolute angles, measured from -y."""
         times, points = run(scenes.double_pendulum(scenes.initial("h", 0.9) + scenes.initial("k", 0.3)), 1.0)
         m, l, c, i = (1.0, 0.7), 0.6, (0.3, 0.25), (0.04, 0.02)
 
@@ -158,7 +159,7 @@ class OtherEquations(unittest.TestCase):
         np.testing.assert_allclose(points[:, 1, 1], -0.6 * np.cos(a) - 0.5 * np.cos(b), atol=1e-7)
 
     def test_crank_by_its_one_coordinate(self):
-        """m(a) a'' + m'(a) a'^2/2 = effort - dV/da, with m' by a complex step."""
+        """Compare with m(a) a'' + m'(a) a'^2/2 = effort - dV/da. The derivative m' is computed by a complex step."""
         times, points = run(scenes.crank(scenes.effort("a", "2")), 1.0)
 
         def rod(a):
@@ -190,7 +191,7 @@ class Program(unittest.TestCase):
                               check=False, universal_newlines=True)
 
     def test_there_are_enough_scenes(self):
-        """Names are a file's each; at least 60 with corners and a reference from outside."""
+        """Each scene has a name of its own. At least 60 scenes have corners and an outside reference."""
         found = scenes.all_scenes()
         self.assertEqual(len({(scene.group, scene.name) for scene in found}), len(found))
         self.assertGreaterEqual(sum(scene.is_cornered and scene.is_rigid for scene in found), 60)
@@ -220,7 +221,7 @@ class Program(unittest.TestCase):
                 file.write(scenes.pendulum(scenes.initial("h", 1.0)))
             done = self.script("--judge", path, "--until", "1", "--accuracy", "1e-3", "--program", PROGRAM[0])
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertRegex(done.stdout, r"--accuracy 0.001: true error \d\.\d+e-\d+, \S+ times what was asked")
+            self.assertRegex(done.stdout, r"--accuracy 0.001: true error \d\.\d+e-\d+, \S+ times the requested one")
 
 
 PROGRAM = []

@@ -1,4 +1,4 @@
-/// `--set`: parameters of a scene on the command line, as the subcommands heed them.
+/// Tests `--set`, which sets parameters of a scene on the command line: every subcommand obeys it.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace flexarm::cli {
 namespace {
 
-/// A pendulum, with the words that are put in the places of its expressions.
+/// Returns a pendulum scene. The arguments are texts that stand in the places of its expressions.
 std::string pendulum(const std::string& head, const std::string& mass, const std::string& length,
                      const std::string& inertia, const std::string& angle) {
   return "<robot name=\"pendulum\">" + head + R"(<link name="base"/>
@@ -55,7 +55,7 @@ TEST(Parameters, EverySubcommandTakesThem) {
     EXPECT_EQ(good.status, 0) << command << good.errors;
     const Outcome bad = shell("flexarm " + command + output + " " + scene + " --set length=3");
     EXPECT_EQ(bad.status, 2) << command;
-    expect_contains(bad.errors, ":2: <parameter> 'length': the value that it is given must be from 0.1 to 2, got '3'");
+    expect_contains(bad.errors, ":2: <parameter> 'length': the value that is set must be from 0.1 to 2, got '3'");
   }
   EXPECT_EQ(shell("flexarm check --set mass=1 " + scene).status, 0);
 }
@@ -85,7 +85,7 @@ TEST(Parameters, WrongSettings) {
   expect_error(scene + " --set mass=nan", "must be a finite number, got 'mass=nan'");
   expect_error(scene + " --set mass=1 length=1 mass=2", "'mass' must be set once");
   expect_error(scene + " --set mass=1 --set mass=1", "'mass' must be set once");
-  expect_error("--set mass=1 " + scene + " --massless lock", "a scene stands before --set");
+  expect_error("--set mass=1 " + scene + " --massless lock", "write the scene before --set");
   expect_error(example("cantilever") + " --set mass=1", "scene: it has no <parameter>, got 'mass'");
 }
 
@@ -111,13 +111,13 @@ TEST(Parameters, ExpandGivesTheSameSceneToProgramsThatKnowNone) {
   expect_contains(text, R"(<mass value="5"/>)");
   EXPECT_EQ(results_of(plain), results_of(scene, "--set mass=5 length=1.25"));
   EXPECT_EQ(shell("flexarm expand " + scene + " --set mass=5 length=1.25").output, text);
-  // What has no expressions stays as it is, to the byte; what is wrong is said.
+  // A scene without expressions stays as it is, to the byte. Errors are reported.
   EXPECT_EQ(shell("flexarm expand " + example("cantilever")).output, read_file(example("cantilever")));
   EXPECT_EQ(shell("flexarm expand " + scene + " --output " + scene).status, 2);
   const Outcome bad = shell("flexarm expand " + scene + " --set mass=-1");
   EXPECT_EQ(bad.status, 2);
   EXPECT_EQ(bad.output, "");
-  expect_contains(bad.errors, "the value that it is given must be at least 0, got '-1'");
+  expect_contains(bad.errors, "the value that is set must be at least 0, got '-1'");
 }
 
 TEST(Parameters, StayInATunedScene) {

@@ -1,8 +1,9 @@
+/// The path of the program under test.
 #include "cli/program.h"
 
 namespace flexarm::cli {
 
-// A file of its own, so that the others compile alike wherever the program is built.
+// In a separate file, so that other files compile to the same code wherever the program is built.
 std::string program() {
   return FLEXARM_PROGRAM;
 }

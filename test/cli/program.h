@@ -1,5 +1,5 @@
 #pragma once
-/// Runs the program as a shell does.
+/// Runs the program by a shell, and reads its output.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -26,7 +26,7 @@ inline std::string read_file(const std::string& path) {
   return text.str();
 }
 
-/// A path for this test alone.
+/// Returns the path of a temporary file that belongs to the running test alone.
 inline std::string temporary(const std::string& name) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   return testing::TempDir() + "flexarm_" + test->test_suite_name() + "_" + test->name() + "_" + name;
@@ -36,7 +36,7 @@ inline std::string example(const std::string& name) {
   return test::source_path("config/examples/" + name + ".urdf");
 }
 
-/// Writes a scene for this test alone and returns its path.
+/// Writes a scene into a file that belongs to the running test alone, and returns the path.
 inline std::string scene_file(const std::string& text) {
   const std::string path = temporary("scene.urdf");
   std::ofstream(path) << text;
@@ -47,10 +47,18 @@ inline void expect_contains(const std::string& text, const std::string& fragment
   EXPECT_NE(text.find(fragment), std::string::npos) << "expected '" << fragment << "' in:\n" << text;
 }
 
-/// The path of the program.
+/// Returns the path of the program under test.
 std::string program();
 
-/// Runs a shell command in which "flexarm" stands for the program.
+/// Returns words that start the program so that SIGINT ends it even in the background; a shell lets background programs
+/// ignore SIGINT. (`env --default-signal` does the same, but Ubuntu 20.04 does not have it.)
+inline std::string interruptible_program() {
+  return "/usr/bin/python3 -c 'import os, signal as s, sys; s.signal(s.SIGINT, s.SIG_DFL); s.signal(s.SIGPIPE, "
+         "s.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])' '" +
+         program() + "' ";
+}
+
+/// Runs a shell command, in which the word "flexarm" stands for the program under test.
 inline Outcome shell(const std::string& command) {
   const std::string output = temporary("stdout"), errors = temporary("stderr");
   const std::string script =
@@ -59,7 +67,7 @@ inline Outcome shell(const std::string& command) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(output), read_file(errors)};
 }
 
-/// A table read back from CSV, by column.
+/// The columns of a table that was read from CSV, by name.
 using Columns = std::map<std::string, std::vector<double>>;
 
 inline std::vector<std::string> split(const std::string& line) {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""HDF5 files and bags of `flexarm simulate`, read by h5py and rosbag: `recording_test.py PROGRAM`."""
+"""Test HDF5 files and bags of `flexarm simulate`, read by h5py and rosbag: `recording_test.py PROGRAM`."""
 
 import csv
 import math
@@ -55,7 +55,7 @@ class Recording(unittest.TestCase):
         table, file = self.record("arm.csv", *until), self.record("arm.h5", *until)
         with open(table, encoding="utf-8") as lines:
             rows = list(csv.DictReader(lines))
-        self.assertEqual(len(rows), 1501)  # more than a chunk
+        self.assertEqual(len(rows), 1501)  # more rows than a chunk of HDF5 has
         with h5py.File(file, "r") as results:
             self.assertEqual(results.attrs["robot"], "arm")
             self.assertEqual(results.attrs["scheme"], "em")
@@ -97,7 +97,7 @@ class Recording(unittest.TestCase):
             joints = [message for _, message, _ in bag.read_messages("/joint_states")]
             self.assertAlmostEqual(joints[-1].header.stamp.to_sec(), 0.5, places=8)
             self.assertEqual(joints[-1].name, ["shoulder"])
-            self.assertGreater(joints[-1].position[0], 0.5)  # it falls
+            self.assertGreater(joints[-1].position[0], 0.5)  # the arm falls
             frames = [[t.child_frame_id for t in message.transforms] for _, message, _ in bag.read_messages("/tf")]
             self.assertEqual(frames[0], ["boom", "hand", "boom/tip"])
             cells = [message for _, message, _ in bag.read_messages("/sensors/cell")]
@@ -106,7 +106,7 @@ class Recording(unittest.TestCase):
             self.assertEqual(latched[0].header.get("latching"), b"1")
 
     def test_bag_has_the_numbers_of_the_table(self):
-        # So many rows at once that the thread that writes is behind the one that steps.
+        # Many rows, so that the writing thread falls behind the stepping thread.
         until = ("--until", "2")
         with open(self.record("arm.csv", *until), encoding="utf-8") as lines:
             rows = list(csv.DictReader(lines))
@@ -117,7 +117,7 @@ class Recording(unittest.TestCase):
         for quantity in ("position", "velocity", "effort"):
             self.assertEqual([getattr(message, quantity)[0] for message in joints],
                              [float(row["joint/shoulder/" + quantity]) for row in rows], quantity)
-        # The joint is at the world's origin, and turns about its y axis.
+        # The joint is at the origin of the world and turns about the world's y axis.
         for frame, row in zip(frames, rows):
             sine = math.sin(float(row["joint/shoulder/position"]) / 2)
             self.assertAlmostEqual(abs(frame.rotation.y), abs(sine), places=12)
@@ -142,7 +142,7 @@ class Recording(unittest.TestCase):
             os.mkfifo(self.path(name))
             result = self.simulate(self.path(name), "--until", "0.01")
             self.assertEqual(result.returncode, 2, result.stderr)
-            self.assertIn("'%s' cannot be written: it is no regular file" % self.path(name), result.stderr)
+            self.assertIn("'%s' cannot be written: it is not a regular file" % self.path(name), result.stderr)
 
     def test_nothing_unfinished_is_left(self):
         self.record("arm.h5", "--until", "0.01")

@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""Bags written here, replayed: `replay_test.py PROGRAM`. In them a joint stays at zero: what differs is its motion."""
+"""Test `flexarm replay` with bags that this test writes: `replay_test.py PROGRAM`.
+
+In most of these bags a joint stays at zero, so that the difference that `replay` reports is the motion of the replayed
+joint."""
 
 import os
 import re
@@ -14,9 +17,13 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pictures"))
+
+from page_reader import read_page  # noqa: E402
+
 STEP = 0.001  # s
-BEGIN = 1000.0  # s, of the first stamp
-# A body on a rail, with a servo that is critically damped at 1000/s: it rests 20 ms after its way.
+BEGIN = 1000.0  # s, the first stamp
+# A body on a rail with a servo, which is critically damped at 1000/s: the body rests 20 ms after the end of a motion.
 SCENE = """<robot name="cart"> <link name="base"/>
   <joint name="rail" type="prismatic"> <parent link="base"/> <child link="cart"/> <axis xyz="1 0 0"/>
     <limit lower="-10" upper="10" effort="0" velocity="0"/> </joint>
@@ -25,19 +32,20 @@ SCENE = """<robot name="cart"> <link name="base"/>
   <servo joint="rail" mode="position" kp="1e6" kd="2e3"/>
   <simulation> <integrator step="0.001"/> <gravity xyz="0 0 0"/> </simulation>
 </robot>"""
-# By which the cart overshoots where it has to stand at once: less than its speed, of at most 15 m/s, over 1000/s.
+# The cart overshoots when it must stop at once: by less than its speed (at most 15 m/s) over 1000/s.
 OVERSHOOT = 0.015  # m
 
 
 def way(start, seconds, position):
-    """To there at a constant rate, from the stamp `start` on; 0: at once."""
+    """Return a trajectory that leads to `position` in `seconds` at a constant rate, from the stamp `start` on. If
+    `start` is 0, it starts at once."""
     message = JointTrajectory(joint_names=["rail"])
     message.header.stamp = genpy.Time.from_sec(start)
     message.points = [JointTrajectoryPoint(positions=[position], time_from_start=genpy.Duration.from_sec(seconds))]
     return message
 
 
-# The same without its servo: it goes where it is pushed.
+# The same scene without its servo: the cart moves where it is pushed.
 FREE = re.sub("<servo.*/>", "", SCENE)
 
 
@@ -53,8 +61,10 @@ class Replay(unittest.TestCase):
         return os.path.join(self.folder.name, name)
 
     def write(self, steps, period, *trajectories, has_clock=False, lock_step=False):
-        """States so far apart by their stamps [s]; each trajectory comes half a period before the state of its number.
-        In lock step another command makes each of the other steps."""
+        """Write a bag of states, `period` [s] apart.
+
+        `trajectories` are pairs (number, message): each message comes half a period before the state of that number.
+        With `lock_step`, all other steps are made by another command."""
         with rosbag.Bag(self.bag, "w") as bag:
             for n in range(steps + 1):
                 stamp = genpy.Time.from_sec(BEGIN + n * period)
@@ -71,7 +81,7 @@ class Replay(unittest.TestCase):
                 bag.write("/joint_states", state, stamp)
 
     def largest(self, *options):
-        """How far the cart has moved [m]."""
+        """Run `flexarm replay` and return how far the cart has moved [m]."""
         command = [PROGRAM, "replay", self.bag, self.scene] + [str(option) for option in options]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
                               check=False)
@@ -79,7 +89,8 @@ class Replay(unittest.TestCase):
         self.assertNotIn("refused", done.stdout)
         return float(re.search(r"^rail +([^ ]+)", done.stdout, re.MULTILINE).group(1))
 
-    # At a quarter of the clock's speed 0.4 s of stamps are 0.1 s of the simulation: of the 200 steps half are left.
+    # At a quarter of the clock's speed, 0.4 s of stamps are 0.1 s of simulated time. 200 steps are twice as many as
+    # needed; 90 steps end before the motion begins.
     def test_stamps_ahead_go_at_the_pace_of_the_run(self):
         self.write(200, STEP / 0.25, (1, way(BEGIN + 0.4, 0.05, 0.3)))
         self.assertAlmostEqual(self.largest("--real-time-factor", 0.25), 0.3, delta=OVERSHOOT)
@@ -91,13 +102,24 @@ class Replay(unittest.TestCase):
             self.write(steps, STEP, (1, way(BEGIN + 0.1, 0.05, 0.3)), has_clock=True)
             self.assertAlmostEqual(self.largest("--real-time-factor", 0.25), moved, delta=OVERSHOOT)
 
-    # 40 states of 5 ms each come before the trajectory, which begins 0.05 s, 50 steps, after its own.
+    # 40 states, 5 ms apart, come before the trajectory. It begins 0.05 s, which is 50 steps, after its stamp.
     def test_stamps_ahead_count_from_the_state_in_lock_step(self):
         for steps, moved in ((150, 0.3), (85, 0)):
             self.write(steps, 0.005, (41, way(BEGIN + 40 * 0.005 + 0.05, 0.02, 0.3)), lock_step=True)
             self.assertAlmostEqual(self.largest("--lock-step"), moved, delta=OVERSHOOT)
 
-    # At 1 m/s it stands after half as many metres as it has seconds to stop.
+    # The recorded cart stays at zero, the replayed one moves.
+    def test_a_page_shows_the_recorded_run_beside_its_replay(self):
+        self.write(200, STEP, (1, way(BEGIN + 0.1, 0.05, 0.3)), has_clock=True)
+        page = self.path("both.html")
+        self.largest("--show", "--page", page)
+        recorded, replayed = read_page(page)
+        self.assertEqual([run.picture["title"] for run in (recorded, replayed)], ["recorded run", "replay"])
+        self.assertLess(abs(recorded.link("cart")[:, 0]).max(), 1e-9)
+        self.assertAlmostEqual(replayed.link("cart")[-1, 0], 0.3, delta=OVERSHOOT)
+        self.assertTrue((recorded.times == replayed.times).all())
+
+    # From 1 m/s it stops in half the distance that it would travel at this speed in the stopping time.
     def test_stops_take_as_long_as_those_of_the_run(self):
         self.write(400, STEP, (1, way(0, 1, 1)), (101, JointTrajectory()), has_clock=True)
         at_once, slowly = self.largest(), self.largest("--stop-duration", 0.2)
@@ -107,13 +129,14 @@ class Replay(unittest.TestCase):
     # ---- when commands act
 
     def write_push(self, late=0, delay=0.0, scene=FREE):
-        """A run of the cart without servo, pushed by 2 N from step 100 on. The bag has the command so many
-        steps late, and states near it with a delay [s]."""
+        """Write a bag of a run of the cart without servo, pushed by 2 N from step 100 on.
+
+        The bag has the command `late` steps too late. The states near the command have a `delay` [s]."""
         with open(self.scene, "w", encoding="utf-8") as file:
             file.write(scene)
         with rosbag.Bag(self.bag, "w") as bag:
             for n in range(0, 401, 10):
-                if n == 110:  # before this state, between those of two steps
+                if n == 110:  # before this state, and between the states of two steps
                     command = JointState(name=["rail"], effort=[2.0])
                     bag.write("/joint_command", command, genpy.Time.from_sec(BEGIN + (100.5 + late) * STEP))
                 pushed = max(n - 100, 0) * STEP
@@ -139,9 +162,9 @@ class Replay(unittest.TestCase):
             self.write_push(late)
             status, output = self.replayed()
             self.assertEqual(status, 0, output)
-            self.assertIn("acts up to 1 step earlier or later than by its time", output)
-            self.assertIn("agrees within what the times of commands explain", output)
-            # Pushed for one of 300 steps more or less: 2 N over 1 kg, for 1 ms, 0.3 s ago.
+            self.assertIn("commands up to 1 step earlier or later than recorded", output)
+            self.assertIn("agrees, apart from differences that the times of commands explain", output)
+            # One of 300 steps more or less is pushed: the speed of 2 N over 1 kg for 1 ms, over 0.3 s.
             rail = re.search(r"^rail +([^ ]+) .* ([^ ]+)$", output, re.MULTILINE)
             for number in rail.groups():
                 self.assertAlmostEqual(float(number), 2 * 0.001 * 0.3, delta=1e-5)
@@ -158,7 +181,7 @@ class Replay(unittest.TestCase):
         self.write_push(3, delay=0.0021)
         status, output = self.replayed()
         self.assertEqual(status, 0, output)
-        self.assertIn("acts up to 4 steps earlier or 1 step later than by its time", output)
+        self.assertIn("commands up to 4 steps earlier or 1 step later than recorded", output)
 
     def test_another_scene_is_not_explained(self):
         self.write_push(scene=FREE.replace('mass value="1"', 'mass value="1.05"'))

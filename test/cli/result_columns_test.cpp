@@ -1,3 +1,4 @@
+/// Tests the choice of columns by patterns: names, order, values, units, and that unneeded values are not computed.
 #include "flexarm/simulation/result_columns.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ TEST(ResultColumns, AreInTheOrderInWhichTheyAreAskedFor) {
   EXPECT_EQ(names(simulation, {"probe/tip/z", "energy/total", "probe/tip/x", "joint/hinge/position"}),
             (Names{"time", "probe/tip/z", "energy/total", "probe/tip/x", "joint/hinge/position"}));
   EXPECT_EQ(names(simulation, {"momentum/y", "time", "energy/total"}), (Names{"time", "momentum/y", "energy/total"}));
-  // Those of one pattern are as they are without any; a column comes once.
+  // Columns that match one pattern keep their usual order. A column comes only once.
   EXPECT_EQ(names(simulation, {"momentum/z", "momentum/[xz]", "m*/[xy]"}),
             (Names{"time", "momentum/z", "momentum/x", "momentum/y"}));
   Names all = names(simulation, {"*"});
@@ -84,7 +85,7 @@ TEST(ResultColumns, MakeNothingThatNoColumnNeeds) {
     columns.row(simulation, {});
     return made_for_output(simulation);
   };
-  for (int n = 0; n < 5; ++n) {  // velocities of the first steps are the scheme's own
+  for (int n = 0; n < 5; ++n) {  // in the first steps, the scheme computes velocities itself
     EXPECT_TRUE(made_by({"time"}).is_nothing());
     EXPECT_TRUE(made_by({"joint/*/position", "joint/*/effort", "frame/*", "probe/*/[xyz]", "probe/*/q?", "solver/*",
                          "sensor/*"})

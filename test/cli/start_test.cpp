@@ -1,18 +1,19 @@
-/// Options and elements that say how a scene starts, as the program heeds them.
+/// Tests options and elements about the start of a scene (--start, clamp, equilibrium, floating root) by running the
+/// program.
 
 #include "cli/program.h"
 
 namespace flexarm::cli {
 namespace {
 
-/// Link `name` of 1 kg, its centre 0.2 m below its origin; without inertia if `is_ghost`.
+/// Returns the link `name` of 1 kg, with its centre of mass 0.2 m below its origin; without inertia if `is_ghost`.
 std::string link(const std::string& name, bool is_ghost = false) {
   return "<link name=\"" + name + "\">" + (is_ghost ? "" : R"(<inertial> <origin xyz="0 0 -0.2"/> <mass value="1"/>
     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/> </inertial>)") +
          "</link>\n";
 }
 
-/// A leg whose knee starts 0.75 rad outside its limits.
+/// Returns a leg whose knee starts 0.75 rad outside its limits.
 std::string leg(bool is_ghost = false) {
   return "<robot name=\"leg\"> <link name=\"trunk\"/>\n" + link("thigh") + link("shank", is_ghost) +
          R"(<joint name="hip" type="continuous"> <parent link="trunk"/> <child link="thigh"/> <axis xyz="0 1 0"/> </joint>
@@ -57,7 +58,7 @@ TEST(Start, EverySubcommandTakesTheOptions) {
   }
 }
 
-// The shank hangs on its stop, and the whole leg leans so that it is in balance.
+// The shank hangs on its stop. The whole leg leans so that it is in equilibrium.
 TEST(Start, EquilibriumStaysAtRest) {
   const std::string csv = temporary("rest.csv");
   const Outcome outcome =
@@ -65,7 +66,7 @@ TEST(Start, EquilibriumStaysAtRest) {
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   Columns columns = read_csv(csv);
   EXPECT_GT(columns["joint/hip/position"][0], 0.1);
-  // 500 steps' round-off of angles of one radian.
+  // The tolerance is the round-off of 500 steps, for angles of about one radian.
   EXPECT_NEAR(columns["joint/hip/position"].back(), columns["joint/hip/position"][0], 500 * 2.2e-16);
   EXPECT_LT(columns["energy/kinetic"].back(), 1e-20);
 }
@@ -86,8 +87,8 @@ TEST(Start, AFloatingRootFalls) {
   const Outcome outcome = shell("flexarm simulate " + path + " --until 0.5 --quiet --output " + csv);
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   Columns columns = read_csv(csv);
-  // Exact for a constant force, but for round-off: each of n steps adds that of a position x to the velocity, eps x /
-  // h, which then acts for n steps at most.
+  // The result is exact for a constant force, except for round-off. Each of n steps adds the round-off of a position x
+  // to the velocity, which is eps x / h, and this error acts for n steps at most.
   const double depth = 0.5 * 9.81 * 0.25, round_off = 500 * 500 * 2.2e-16 * depth;
   EXPECT_NEAR(columns["frame/stone/z"].back(), -depth, round_off);
   EXPECT_NEAR(columns["joint/root/z/position"].back(), -depth, round_off);

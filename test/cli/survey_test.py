@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/survey over a folder of scenes: `survey_test.py PROGRAM`."""
+"""Test scripts/survey on a folder of scenes: `survey_test.py PROGRAM`."""
 
 import csv
 import math
@@ -61,17 +61,17 @@ class Survey(unittest.TestCase):
         row = self.rows["good.urdf"]
         self.assertEqual((row["outcome"], row["links"], row["joints"], row["warned"]), ("loaded", "2", "1", ""))
         self.assertEqual(float(row["stops"]), 0)
-        self.assertLess(float(row["drift"]), 1e-6)  # Newton's tolerance of 1e-8 in each of 50 steps
+        self.assertLess(float(row["drift"]), 1e-6)  # Newton's tolerance is 1e-8 in each of 50 steps
         self.assertGreater(float(row["speed"]), 0)
 
     def test_energy_in_stops(self):
         row = self.rows["folder/outside.urdf"]
         self.assertEqual((row["outcome"], row["warned"]), ("loaded", "yes"))
-        # Gravity adds little to what the stop holds.
+        # Compared with the energy in the stop, gravity adds little.
         self.assertGreater(float(row["stops"]), 0.9)
 
     def test_refusals_give_the_reason(self):
-        self.assertIn("broken.urdf:1: file: must be well-formed XML", self.rows["broken.urdf"]["reason"])
+        self.assertIn("broken.urdf:1: must be well-formed XML", self.rows["broken.urdf"]["reason"])
         self.assertIn("massless.urdf:2: <joint>: joint coordinate 'hinge' moves nothing",
                       self.rows["massless.urdf"]["reason"])
 
@@ -121,7 +121,7 @@ class Equilibria(unittest.TestCase):
             path = os.path.join(folder, "pendulum.urdf")
             with open(path, "w", encoding="utf-8") as file:
                 file.write(SCENES["good.urdf"])
-            # 1 kg, 1 m along x, about y: m g l cos(angle).
+            # 1 kg at 1 m along x, turning about y: m g l cos(angle).
             moment, largest, *_ = moments(path, {"hinge": 0.3})["hinge"]
             self.assertAlmostEqual(moment, 9.81 * math.cos(0.3), places=12)
             self.assertAlmostEqual(largest, 9.81, places=12)

@@ -1,4 +1,4 @@
-/// `flexarm tune`: what it finds, what it writes, how it ends.
+/// Tests `flexarm tune` by running the program: what it finds, what it writes, and how it ends.
 #include <algorithm>
 #include <filesystem>
 #include <regex>
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Comments, odd spaces and entities that shall stay.
+/// A scene with comments, odd spaces and entities, which tuning must keep.
 const char* const kScene = R"(<?xml version="1.0"?>
 <robot name="two arms">  <!-- <beam elements="7"> -->
   <link name="world"/>
@@ -32,7 +32,7 @@ const char* const kScene = R"(<?xml version="1.0"?>
 </robot>
 )";
 
-/// The text without the attributes that tuning may change, and without an <integrator> that it added.
+/// Returns the text without the attributes that tuning may change, and without an <integrator> that tuning added.
 std::string untuned(const std::string& text) {
   const std::string beams = std::regex_replace(text, std::regex(R"( *\b(elements|order) *= *["'][^"']*["'])"), "");
   const std::string all = std::regex_replace(beams, std::regex(R"( *\b(scheme|step|tolerance)="[^"]*")"), "");
@@ -95,7 +95,7 @@ TEST(Tune, AccuracyThatCannotBeMetIsAFailureThatSaysWhatWasReached) {
   const Outcome outcome = shell("flexarm tune " + example("rigid_double_pendulum") +
                                 " --accuracy 1e-15 --until 0.1 --budget 3 --output " + output);
   EXPECT_EQ(outcome.status, 1);
-  expect_contains(outcome.output, "an error of 1e-15 cannot be met; this is the most accurate that was found");
+  expect_contains(outcome.output, "an error of 1e-15 cannot be met; this is the most accurate run that was found");
   EXPECT_FALSE(fs::exists(output));
 }
 
@@ -107,7 +107,7 @@ TEST(Simulate, ChoosesAutomaticMeshesForAnAccuracy) {
   EXPECT_EQ(chosen.output.find("a&b"), std::string::npos) << "it has a number of elements";
   const Outcome without = shell(run);
   EXPECT_EQ(without.output.find("elements:"), std::string::npos);
-  // A state is one of the scene's own meshes.
+  // A saved state belongs to the meshes of the scene itself, so the meshes are kept.
   const Outcome kept = shell(run + "--accuracy 1e-2 --checkpoint " + temporary("state"));
   EXPECT_EQ(kept.output.find("elements:"), std::string::npos);
 }
@@ -115,7 +115,7 @@ TEST(Simulate, ChoosesAutomaticMeshesForAnAccuracy) {
 TEST(Tune, SignalsKeepTheBestSoFar) {
   const std::string output = temporary("tuned.urdf");
   const Outcome outcome =
-      shell("env --default-signal '" + program() + "' tune " + example("flexible_two_link_arm") +
+      shell(interruptible_program() + "tune " + example("flexible_two_link_arm") +
             " --accuracy 1e-5 --until 1000 --output " + output + " & sleep 2; kill -INT $!; wait $!");
   EXPECT_EQ(outcome.status, 130);
   expect_contains(outcome.errors, "interrupted");

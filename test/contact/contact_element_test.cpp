@@ -1,4 +1,4 @@
-// What contacts do over a step: exact work, no momentum, the derivatives of their forces.
+// Tests contacts of points with shapes over a step: exact work, conservation of momenta, tangents of their forces.
 #include "contact/contact_element.h"
 
 #include <limits>
@@ -18,10 +18,6 @@ namespace {
 
 using Poses = std::vector<NodePose>;
 
-NodePose turned_node(const Vector3& position, const Vector3& rotation) {
-  return node_at(position, so3::exp_quaternion(rotation));
-}
-
 ContactLaw gripping_law(double friction, double restitution) {
   ContactLaw law = test::gripping_law(friction, restitution, 0.6);
   law.spinning = 0.1 * friction;
@@ -36,7 +32,8 @@ struct Scene {
   ContactSurface surface;
 };
 
-/// A ball and a corner of node 0, and an element of nodes 0, 2, 3, against shapes of node 1 or of the world.
+/// Scenes of a ball and a corner on node 0, and of an element with nodes 0, 2, 3, against shapes on node 1 or on the
+/// world.
 std::vector<Scene> scenes() {
   const Pose place{{0.05, -0.02, 0.03}, so3::exp_quaternion(Vector3(0.2, 0.1, -0.3))};
   const std::vector<ContactShape> shapes = {{HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
@@ -99,9 +96,9 @@ class ContactElements : public ::testing::Test {
     return out;
   }
 
-  const Vector3 stretch{0.004, -0.003, 0.002};  // of the grip at the beginning
-  const double inside = 0.003;                  // of what has started so deep
-  const Vector3 turned{0.02, 0.01, -0.03};      // of what resists to turning, at the beginning
+  const Vector3 stretch{0.004, -0.003, 0.002};  // of the friction spring at the beginning
+  const double inside = 0.003;                  // initial penetration, see let_out()
+  const Vector3 turned{0.02, 0.01, -0.03};      // rotation of the springs that resist rotation, at the beginning
   const std::vector<Vector6> velocities = std::vector<Vector6>(4, Vector6::Constant(0.2));
   const Poses begin{turned_node({0.1, 0.05, 0.52}, {-0.1, 0.2, 0.2}), turned_node({0, 0, 0}, {0.2, 0.1, -0.3}),
                     turned_node({0.15, 0.1, 0.5}, {0, 0.1, 0}), turned_node({0.2, 0.3, 0.45}, {0.1, 0.1, 0})};
@@ -110,7 +107,7 @@ class ContactElements : public ::testing::Test {
                   turned_node({0.17, 0.12, 0.45}, {0.05, 0.2, 0.1}), turned_node({0.22, 0.28, 0.42}, {0.2, 0.1, 0.1})};
 };
 
-/// With forces at the end, or means.
+/// Tests for forces at the end of a step and for mean forces.
 class OverSteps : public ContactElements, public ::testing::WithParamInterface<bool> {
  protected:
   using ContactElements::action;
@@ -119,7 +116,8 @@ class OverSteps : public ContactElements, public ::testing::WithParamInterface<b
   }
 };
 
-// Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
+// Central differences with the step 1e-6 have truncation errors of 1e-12 times third derivatives, and round-off of
+// 1e-16 / 1e-6 times the forces.
 TEST_P(OverSteps, HaveTheirTangent) {
   for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.0, 0.05, 5.0}) {
@@ -162,9 +160,10 @@ TEST_P(OverSteps, AddToNoMomentum) {
   }
 }
 
-// What the mean forces do over the step is what is stored and dissipated, less what letting out has done, to round-off.
+// The work of mean forces over the step equals the change of energy plus dissipation, less the work of decaying initial
+// penetrations (let_out()), to round-off.
 TEST_P(OverSteps, OfMeansDoExactWork) {
-  if (GetParam()) return;  // forces at the end do not
+  if (GetParam()) return;  // does not hold for forces at the end
   for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.01, 0.3, 5.0}) {
       const ContactElement element({"", ""}, side, surface, gripping_law(friction, 0.5));
@@ -191,7 +190,8 @@ TEST_P(OverSteps, OfMeansDoExactWork) {
     }
 }
 
-/// A ball of node 0 in front of a plate of the world, over a step from one place to another at an even speed.
+/// A ball on node 0 in front of a plate of the world. Over a step it moves from one position to another at constant
+/// speed.
 struct BallAndPlate {
   explicit BallAndPlate(double begin_x, double end_x)
       : begin{node_at(Vector3(begin_x, 0, 0), Quaternion::Identity())},
@@ -214,7 +214,7 @@ struct BallAndPlate {
   std::unique_ptr<ContactElement> element;
 };
 
-/// {force, moment about the world's origin} on what has the stations, by the balance of what rests.
+/// {force, moment about the world's origin} on the side with the stations, from the residual at rest.
 Vector6 pressed(const Eigen::VectorXd& residual, const std::vector<int>& nodes, const Poses& poses) {
   Vector6 out = Vector6::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -225,8 +225,8 @@ Vector6 pressed(const Eigen::VectorXd& residual, const std::vector<int>& nodes, 
   return out;
 }
 
-// Where nothing moves, what points are said to do is what the balance has, its moments included; and the names of both
-// sides say only how signs are.
+// Without motion, the forces that touch() reports equal those of the residual, moments included. The order of the two
+// names only changes signs.
 TEST_F(ContactElements, TellWhatTheyDoAndWhere) {
   const State state = state_at(end);
   const std::vector<Vector6> still(4, Vector6::Zero());
@@ -256,7 +256,8 @@ TEST_F(ContactElements, TellWhatTheyDoAndWhere) {
     }
 }
 
-// In motion it is what acts over a short step, to its length: 1e-7 s of 0.2 m/s beside penetrations of 0.01 m.
+// In motion, touch() reports the forces of a short step, with an error proportional to its length: 1e-7 s at 0.2 m/s,
+// with penetrations of 0.01 m.
 TEST_F(ContactElements, TellWhatTheyDoInMotion) {
   const double duration = 1e-7;
   Poses before = end;
@@ -277,7 +278,7 @@ TEST_F(ContactElements, TellWhatTheyDoInMotion) {
   }
 }
 
-// That of the ball's surface to the plate, whether it touches or not.
+// The gap is that between the ball's surface and the plate, in contact or not.
 TEST(ContactElement, TellsTheSmallestGap) {
   for (const double x : {-0.1, -0.0205}) {
     const BallAndPlate scene(x, x);
@@ -294,7 +295,7 @@ TEST(ContactElement, TellsTheSmallestGap) {
   }
 }
 
-/// One station of a scene that is as deep inside as is asked for.
+/// A scene with a single station of the given penetration.
 Scene alone(const Scene& scene, const ContactStation& station, const Poses& poses, double penetration) {
   const auto pose_of = [&](int node) { return node < 0 ? NodePose() : poses[node]; };
   const Vector3 place = seen_from(scene.surface, middle_of(scene.side, station, pose_of), pose_of);
@@ -303,8 +304,8 @@ Scene alone(const Scene& scene, const ContactStation& station, const Poses& pose
   return out;
 }
 
-// About a touch so light that its force has no part in it, the tangent is that of the springs of what is measured; and
-// dampers are the derivatives of the push by its rate.
+// For a touch so light that its force is negligible, the tangent is that of the springs of measures(). The dampers are
+// the derivatives of the push with respect to its rate.
 TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
   const State state = state_at(end);
   int count = 0;
@@ -315,7 +316,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
         if (side.stations[0].radius <= 0) continue;
         const ContactLaw law = gripping_law(0.5, 0.5);
         const ContactElement element({"", ""}, side, surface, law);
-        const ForceMeasures measures = element.measures(state, element.reach().data());
+        const ForceMeasures measures = element.measures(state, nullptr, element.reach().data());
         ASSERT_EQ(measures.rows.rows(), 6) << name;
         const double share = side.stations[0].share;
         if (penetration < 1e-6) {
@@ -327,8 +328,8 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
         const auto push = [&](double rate) {
           return contact_push(law, {penetration - 0.5 * h * rate, penetration + 0.5 * h * rate, h, 0}).value;
         };
-        const double slope = element.dampers(state, Eigen::VectorXd::Zero(6)).slope(0, 0);
-        // At a light touch a step of that length goes out of it.
+        const double slope = element.dampers(state, nullptr, Eigen::VectorXd::Zero(6)).slope(0, 0);
+        // At a light touch, the contact would end within this difference.
         if (penetration > 1e-6) {
           EXPECT_NEAR(slope, share * (push(v) - push(-v)) / (2 * v), 1e-4 * slope) << name;
         }
@@ -337,7 +338,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
   EXPECT_GT(count, 12);
 }
 
-// What goes through, or to the other side, or touches without having been near.
+// Halved steps are needed if a point passes through a shape or to its other side, or touches a shape that was not near.
 TEST(ContactElement, AsksForHalvesOfStepsThatItWouldNotSee) {
   const double memory[PointMemory::kSize] = {};
   const auto asks = [&](double from, double to, int count) {
@@ -364,11 +365,11 @@ TEST(ContactElement, ActsOnNodesThatAreNearAlone) {
   EXPECT_EQ(nodes_in(-0.0211, -0.0211), 1) << "it is there";
 }
 
-// What starts inside is felt from where it is on; a corner of a box that stands in one of the same width by that face
-// of it on which it can lie, though it is on edges of two others.
+// A point that starts inside is in contact from its initial depth on. A corner of a box stands on a box of the same
+// width: the face on which it can lie counts, although the corner is also on edges of two other faces.
 TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
   const ContactShape box{Box{{0.5, 0.5, 0.5}}, Pose()};
-  Matrix3 below;  // of a lower corner
+  Matrix3 below;  // outward directions of a lower corner
   below << 1, 0, 0, 0, 1, 0, 0, 0, -1;
   const auto start_at = [&](double z, double radius, const Matrix3& outwards) {
     return start_inside(box, {}, radius, {0.5, 0.5, z}, outwards);
@@ -385,7 +386,7 @@ TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
   EXPECT_NEAR(nearest.start, 0.1, 1e-15);
 }
 
-// Whatever a contact has stored when it is no more near is dissipated.
+// When a contact is no longer near, its stored energy is dissipated.
 TEST(ContactElement, AccountsForWhatIsRememberedFarAway) {
   const BallAndPlate scene(-0.2, -0.21);
   std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0, 0, 0, 0, 0, 0}, left(memory.size(), 1.0);

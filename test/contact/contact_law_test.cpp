@@ -1,3 +1,4 @@
+// Tests the laws of contact at a point (push and grip): slopes against differences, energies, and restitution.
 #include "contact/contact_law.h"
 
 #include <gtest/gtest.h>
@@ -35,13 +36,14 @@ std::vector<Case> random_cases() {
 
 TEST(ContactPush, HasItsSlope) {
   for (const auto& [law, change] : random_cases()) {
-    if (std::abs(change.end) < 1e-5 || std::abs(change.end - change.begin) < 1e-4) continue;  // a kink; cancellation
+    // These cases are near a kink of the law, or lose digits.
+    if (std::abs(change.end) < 1e-5 || std::abs(change.end - change.begin) < 1e-4) continue;
     ContactChange more = change, less = change;
     more.end += 1e-6;
     less.end -= 1e-6;
     const double difference = (contact_push(law, more).value - contact_push(law, less).value) / 2e-6;
     const double slope = contact_push(law, change).slope;
-    // A push that comes to an end within the difference has a kink there, too.
+    // If the push ends within the difference, it has a kink there, too.
     if (contact_push(law, more).value == 0 || contact_push(law, less).value == 0) continue;
     EXPECT_NEAR(slope, difference, 1e-6 * (std::abs(slope) + 100));
   }
@@ -73,7 +75,7 @@ TEST(ContactPush, IsTheDerivativeOfTheEnergyAtRest) {
     }
 }
 
-// The mean over a short step is what acts at an instant in it, to the square of its length.
+// The mean over a short step equals the push at an instant within it, with an error of second order in the length.
 TEST(ContactPush, AtAnInstantIsTheMeanOfAShortStep) {
   for (const double depth : {0.7, std::numeric_limits<double>::infinity()})
     for (const double rate : {-0.05, 0.2})
@@ -88,8 +90,8 @@ TEST(ContactPush, AtAnInstantIsTheMeanOfAShortStep) {
   EXPECT_EQ(push_at(law_with(0.5), 0.1, -10, 1), 0) << "it never pulls";
 }
 
-/// Speed behind a hit over that before it, by steps of the mid-point rule so short that their error is below 1e-4:
-/// a hundredth of the oscillator's radian.
+/// Speed after a hit over the speed before it. The steps of the midpoint rule are a hundredth of the oscillator's
+/// radian, so that their error is below 1e-4.
 double restitution_of(const ContactLaw& law, double mass, double speed) {
   const double step = 0.01 / std::sqrt(law.stiffness / mass);
   double p = 0, v = speed, remembered = 0;
@@ -114,7 +116,8 @@ double restitution_of(const ContactLaw& law, double mass, double speed) {
   return -v / speed;
 }
 
-// Whatever the mass, the speed and the depth; half a per cent for the law's sum over steps at the ends of the hit.
+// The restitution is independent of mass, speed and depth. The error of half a per cent is from the steps at both ends
+// of the hit.
 TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
   for (const double e : {0.1, 0.3, 0.5, 0.8, 1.0})
     for (const double mass : {1.0, 7.0 / 4, 5.0})
@@ -122,16 +125,17 @@ TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
         EXPECT_NEAR(restitution_of(law_with(e, speed == 1.0 ? 2.0 : 0.02), mass, speed), e, 0.005) << mass << speed;
 }
 
-// Pressed in again before it has come off, it is damped by the speed of that, not by that of the hit before.
+// If a point reverses and penetrates again before it has left, the law uses the speed of the new approach instead of
+// the first one.
 TEST(ContactPush, WhatTurnsRoundOnItsWayBackIsANewHit) {
-  ContactChange turning{1e-3, 1.2e-3, 0.01};  // at -0.1 m/s when it begins, at 0.14 m/s when it ends
+  ContactChange turning{1e-3, 1.2e-3, 0.01};  // -0.1 m/s at the beginning, 0.14 m/s at the end
   turning.speed = approach_speed(turning.begin, -0.1, -2.0);
   EXPECT_EQ(turning.speed, 2.0);
   EXPECT_EQ(approach_speed(turning.end, 0.14, remembered_speed(turning, -0.1)), 0.14);
 }
 
-// A step from the touch to behind the turn is too long; one of a twentieth of a turn is not, nor is one of what rests,
-// however long, nor any of a linear elastic contact. (docs/notes/contact.md 2)
+// A step from the touch to beyond the turning point is too long. A step of a twentieth of a turn is short enough. So is
+// any step of a point at rest, and any step of a linear elastic contact. (docs/notes/contact.md 2)
 TEST(ContactPush, HitsAreCoarseInLongSteps) {
   const ContactLaw law = law_with(0.5), elastic = law_with(1);
   const double radian = 1 / law.frequency, speed = 0.3;
@@ -142,7 +146,7 @@ TEST(ContactPush, HitsAreCoarseInLongSteps) {
   EXPECT_FALSE(is_coarse_hit(law, {-0.2, -0.1, 2 * radian}, speed, 1)) << "it does not touch";
   EXPECT_FALSE(is_coarse_hit(elastic, {0, 0.1, 2 * radian}, speed, 1));
   EXPECT_TRUE(is_coarse_hit(law_with(1, 0.3), {0, 0.1, 2 * radian}, speed, 1)) << "an elastic one that hardens";
-  // What rests and is pressed in goes through all of its motion in any step: it is a hit if it is fast.
+  // A point at rest that is pressed in covers all of its motion in any step. It counts as a hit if it is fast.
   ContactLaw slow = law;
   slow.most_start = 0.1;
   EXPECT_FALSE(is_coarse_hit(slow, {0, 1e-5, 2 * radian}, 0, 1));
@@ -152,7 +156,7 @@ TEST(ContactPush, HitsAreCoarseInLongSteps) {
 TEST(ContactPush, HasTheDampingOfItsClosedForm) {
   for (const double e : {0.05, 0.3, 0.5, 0.8, 0.95}) {
     const double d = damping_for_restitution(e);
-    // 1 - e d has the round-off of 1; its logarithm has that over what is left.
+    // 1 - e d has the round-off of 1, so its logarithm has this round-off over 1 - e d.
     EXPECT_NEAR(std::log((1 + d) / (1 - e * d)), d * (1 + e), 1e-14 + 1e-15 / (1 - e * d)) << e;
     EXPECT_GT(d, 0.5 * (1 - e)) << "0 is a solution, too";
   }

@@ -1,4 +1,4 @@
-// By which face corners come into boxes and cylinders.
+// Tests by which face a corner enters a box, a cylinder or a convex hull.
 #include <gtest/gtest.h>
 
 #include "contact/point_contact.h"
@@ -29,7 +29,7 @@ TEST(Faces, AreNotThoseThatThePointPassesBeside) {
   EXPECT_EQ(entered_face(kBox, {0.32, 0.18, 0}, {0.28, 0.3, 0}), 0) << "past the edge";
 }
 
-// Corners of equal boxes on each other lie on edges.
+// Corners of equal boxes that stand on each other lie on edges.
 TEST(Faces, OfEdgesAreThoseTowardsWhichThePointMoves) {
   EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.11}, {0.3, -0.2, 0.09}), 5);
   EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.2, 0.09}), 5) << "which it touches to begin with";
@@ -42,7 +42,7 @@ TEST(Faces, OfEdgesAreThoseTowardsWhichThePointMoves) {
 
 TEST(Faces, BoundHalfSpacesAndEndlessCylinders) {
   EXPECT_NEAR(beyond_face(kBox, 5).distance({5, 5, 0.15}).value, 0.05, 1e-15);
-  EXPECT_NEAR(beyond_face(kBox, 4).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // the round-off of 5
+  EXPECT_NEAR(beyond_face(kBox, 4).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // tolerance: round-off of 5
   EXPECT_NEAR(beyond_face(kCylinder, 1).distance({0.4, 0, 7}).value, 0.1, 1e-15);
   EXPECT_NEAR(beyond_face(kCylinder, 3).distance({4, 0, -0.3}).value, 0.2, 1e-15);
 }
@@ -57,7 +57,7 @@ TEST(Shapes, AreMetByWhatGoesThroughThem) {
   EXPECT_FALSE(passes_through(rod, {-0.015, 0.011, 0}, {0.015, 0.011, 0}, 0));
 }
 
-// Of which a roof has two on top.
+// When a point moves on to another face of a hull, this face takes over. The roof has two faces on top.
 TEST(Faces, OfHullsAreLeftForTheNextOnes) {
   const ContactShape roof{Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.2, 0.1}, 0.03))}, Pose()};
   EXPECT_EQ(entered_face(roof, {0.1, 0, 0.3}, {0.1, 0, 0.1}), 5);
@@ -68,8 +68,9 @@ TEST(Faces, OfHullsAreLeftForTheNextOnes) {
   EXPECT_NEAR(beyond_face(roof, 5).distance({0.3, 5, 0.1}).value, 0, 1e-14);
   ContactLaw law;
   law.stiffness = 100;
-  // Over the ridge: what the first slope had stored goes on into the other one, less what the ridge is nearer.
-  const Vector3 over(-0.003, 0, 0.12);  // a slope leans by a tenth
+  // Over the ridge, the second slope takes over from the first. The second slope is nearer to the point, and the
+  // difference of the two elastic energies is let go.
+  const Vector3 over(-0.003, 0, 0.12);  // a slope is inclined by one tenth
   PointMotion motion;
   motion.begin = over;
   motion.end = {-0.01, 0, 0.119};
@@ -82,7 +83,8 @@ TEST(Faces, OfHullsAreLeftForTheNextOnes) {
   EXPECT_NEAR(felt.let_go, 50 * (before * before - after * after), 1e-15);
 }
 
-// What comes beside its face is let go, with what was stored; what comes out of it is forgotten.
+// A point that leaves its face sideways is released, and its stored energy is dissipated. A point that leaves through
+// its face is forgotten.
 TEST(Faces, AreKeptUntilThePointIsOut) {
   ContactLaw law;
   law.stiffness = 100;
@@ -107,8 +109,9 @@ TEST(Faces, AreKeptUntilThePointIsOut) {
   EXPECT_EQ(inside.face, 5) << "of a start inside the nearest one";
 }
 
-// The edge of a table comes into a block that slides off it by the block's front: it is the bottom that lies on it. The
-// front holds back what it can lie on, a corner of another block.
+// A block slides off a table, so that the table's edge enters the block through its front. The block's bottom must
+// count as the entered face, since it lies on the edge. The front counts for points that it can lie on, e.g. a corner
+// of another block.
 TEST(Faces, AreThoseThatACornerCanLieOn) {
   const ContactShape block{Box{{0.3, 0.2, 0.1}}, Pose()};
   ContactLaw law;
@@ -118,7 +121,7 @@ TEST(Faces, AreThoseThatACornerCanLieOn) {
   PointMotion motion;
   motion.begin = {0.301, 0, -0.0981};
   motion.end = {0.299, 0, -0.0981};
-  motion.outwards.col(0) = Vector3::UnitX();  // of the table
+  motion.outwards.col(0) = Vector3::UnitX();  // outward direction of the table
   motion.outwards.col(2) = Vector3::UnitZ();
   const FeltShape laid = felt_shape(block, law, 0, motion, {});
   EXPECT_EQ(laid.face, 6);

@@ -1,4 +1,4 @@
-// What contacts with a beam's line do over a step: exact work, no momentum, the derivatives of their forces.
+// Tests contacts with a beam's line over a step: exact work, conservation of momenta, tangents of their forces.
 #include "contact/line_contact.h"
 
 #include <random>
@@ -21,7 +21,7 @@ ContactLaw gripping_law(double friction, double restitution) {
   return test::gripping_law(friction, restitution, 0.4);
 }
 
-/// Poses at both ends of a step, and what touches in it: all numbers but the order are random.
+/// Poses at both ends of a step, velocities, and the contact element. All numbers except the order are random.
 struct Scene {
   const char* name;
   std::unique_ptr<LineContact> element;
@@ -32,7 +32,7 @@ struct Scene {
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  /// In braces the numbers are drawn in their order, with every compiler.
+  /// Braces guarantee that the numbers are drawn in the same order with every compiler.
   Vector3 vector(double size) { return size * Vector3{number_(engine_), number_(engine_), number_(engine_)}; }
 
  private:
@@ -40,7 +40,7 @@ class Random {
   std::uniform_real_distribution<double> number_{-1, 1};
 };
 
-/// Two elements of a line along x, bent, from node `first` on; the nodes of both.
+/// Adds two elements of a bent line along x to `poses`, and returns the node numbers of both elements.
 std::vector<std::array<int, 5>> add_line(int order, double bend, Random& random, Poses& poses) {
   std::vector<std::array<int, 5>> elements(2);
   const int first = static_cast<int>(poses.size());
@@ -54,18 +54,20 @@ std::vector<std::array<int, 5>> add_line(int order, double bend, Random& random,
   return elements;
 }
 
-/// All nodes moved and turned by random amounts.
+/// Moves and rotates all nodes by random amounts.
 Poses moved_by(const Poses& poses, double way, double turn, Random& random) {
   Poses out;
   for (const NodePose& pose : poses) {
     Vector6 by;
-    by << random.vector(way), random.vector(turn);
+    by.head<3>() = random.vector(way);
+    by.tail<3>() = random.vector(turn);
     out.push_back(moved(pose, by));
   }
   return out;
 }
 
-/// A ball and a point of a body; stations of another line; of the same one. Also of what is fixed in the world.
+/// A scene of the given kind: a ball and a point on a body or on the world, stations on another line, or a station on
+/// the same line.
 Scene scene_of(const char* name, int order, double friction, unsigned seed) {
   Random random(seed);
   Scene out{name, nullptr, {}, {}, {}};
@@ -99,7 +101,7 @@ Scene scene_of(const char* name, int order, double friction, unsigned seed) {
     station.weights = line_weights(order, 0.4).values;
     station.radius = 0.3;
     side.stations = {station};
-    pairs = {{0, {0, 1.3}}};  // it is clamped there
+    pairs = {{0, {0, 1.3}}};  // near its clamped end
   } else {
     ContactStation ball, point;
     ball.arm = {0.1, 0.05, -0.1};
@@ -118,7 +120,8 @@ Scene scene_of(const char* name, int order, double friction, unsigned seed) {
   out.end = moved_by(out.begin, 0.03, 0.3, random);
   for (std::size_t i = 0; i < out.begin.size(); ++i) {
     Vector6 velocity;
-    velocity << random.vector(0.3), random.vector(0.3);
+    velocity.head<3>() = random.vector(0.3);
+    velocity.tail<3>() = random.vector(0.3);
     out.velocities.push_back(velocity);
   }
   const double crossing = kind == "other line" ? 2 : 0;
@@ -171,7 +174,8 @@ Action action_of(const Scene& scene, const Poses& at_end, bool at_rest) {
 
 class LineContacts : public ::testing::TestWithParam<bool> {};
 
-// Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
+// Central differences with the step 1e-6 have truncation errors of 1e-12 times third derivatives, and round-off of
+// 1e-16 / 1e-6 times the forces.
 TEST_P(LineContacts, HaveTheirTangent) {
   for (const char* name : kNames)
     for (int order = 1; order <= 4; ++order)
@@ -217,8 +221,8 @@ TEST_P(LineContacts, AddToNoMomentum) {
     }
 }
 
-// What the mean forces do over the step is what is stored and dissipated, less what letting out has done, to round-off,
-// whatever the turns.
+// The work of mean forces over the step equals the change of energy plus dissipation, less the work of decaying initial
+// penetrations (let_out()), to round-off. This holds for any rotation.
 TEST(LineContact, OfMeansDoesExactWork) {
   double let_out = 0;
   for (const char* name : kNames)
@@ -250,8 +254,8 @@ TEST(LineContact, OfMeansDoesExactWork) {
   EXPECT_GT(let_out, 0);
 }
 
-// About a touch so light that its force has no part in it, the tangent is that of the springs of what is measured; and
-// dampers are the derivatives of the push by its rate.
+// For a touch so light that its force is negligible, the tangent is that of the springs of measures(). The dampers are
+// the derivatives of the push with respect to its rate.
 TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
   for (const char* name : kNames) {
     Scene scene = scene_of(name, 2, 0.5, 3);
@@ -260,10 +264,10 @@ TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
     std::vector<int> nodes(element->most_nodes());
     const std::vector<Vector6> at_rest(scene.begin.size(), Vector6::Zero());
     nodes.resize(element->find_nodes({scene.begin, at_rest}, nodes.data()));
-    const ForceMeasures measures = element->measures(state, nodes.data());
+    const ForceMeasures measures = element->measures(state, nullptr, nodes.data());
     ASSERT_GE(measures.rows.rows(), 3) << name;
     EXPECT_EQ(measures.rows.cols(), 6 * static_cast<Eigen::Index>(nodes.size()));
-    // Each row is the derivative of a gap or of a slip: all nodes moved as one body change none.
+    // Each row is the derivative of a gap or of a slip. So a rigid motion of all nodes changes none.
     for (int k = 0; k < 6 && name != std::string("world"); ++k) {
       Eigen::VectorXd motion(measures.rows.cols());
       for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -288,7 +292,8 @@ TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
       };
       slope[k] = (energy(h) - energy(-h)) / (2 * h);
     }
-    // It is a combination of the normal rows. In the case of several lines the angle has a part in the energy.
+    // The derivative is a combination of the normal rows. With another line it is not, because the energy depends on
+    // the crossing angle.
     if (name != std::string("other line")) {
       Eigen::MatrixXd rows(measures.rows.rows() / 3, measures.rows.cols());
       for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.row(i) = measures.rows.row(3 * i);
@@ -296,13 +301,13 @@ TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
       EXPECT_LE((rows.transpose() * pushes - slope).norm(), 1e-7 * slope.norm()) << name;
       EXPECT_LT(pushes.maxCoeff(), 0) << name << ": energies rise as gaps close";
     }
-    const DamperTensions dampers = element->dampers(state, Eigen::VectorXd::Ones(measures.rows.rows()));
+    const DamperTensions dampers = element->dampers(state, nullptr, Eigen::VectorXd::Ones(measures.rows.rows()));
     EXPECT_GT(dampers.tension[0], 0);
     EXPECT_EQ(dampers.tension[1], 0);
   }
 }
 
-// ---------------------------------------------------------------- nearest places, what is near
+// ---------------------------------------------------------------- nearest places, and search for near pairs
 
 TEST(LineContact, FindsTheNearestPlaceOfALine) {
   Random random(5);
@@ -323,7 +328,7 @@ TEST(LineContact, FindsTheNearestPlaceOfALine) {
       EXPECT_NEAR(std::sqrt(found.square), distance_at(found.xi), 1e-14);
       for (int k = 0; k <= 300; ++k)
         EXPECT_GE(distance_at(low + (high - low) * k / 300), std::sqrt(found.square) - 1e-13) << order << " " << run;
-      // Distances are flat there: a place is as exact as the derivative is.
+      // The distance is stationary at the nearest point, so the point is as exact as the derivative.
       if (!found.is_clamped && found.square > 1e-4) {
         const double h = 1e-4, slope = (distance_at(found.xi + h) - distance_at(found.xi - h)) / (2 * h);
         EXPECT_LE(std::abs(slope), 1e-6) << order << " " << run;
@@ -333,7 +338,8 @@ TEST(LineContact, FindsTheNearestPlaceOfALine) {
     }
 }
 
-/// A small ball beside a line of ten elements of order 1 along x, over a step from one place to another at even speed.
+/// A small ball beside a line of ten elements of order 1 along x. Over a step it moves from one position to another at
+/// constant speed.
 struct BallAndLine {
   BallAndLine(const Vector3& from, const Vector3& to) {
     LineTouch touch;

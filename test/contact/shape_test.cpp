@@ -1,3 +1,4 @@
+// Tests shapes that can touch: distances, their derivatives, and points of contact.
 #include "contact/shape.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +38,8 @@ std::vector<Vector3> random_points(int count) {
   return out;
 }
 
-// Differences with steps of 1e-6 and 1e-4 have errors of their squares, but where a face ends within the step.
+// Differences with steps of 1e-6 and 1e-4 have errors of the squares of these, except where a face ends within the
+// step.
 TEST(ContactShapes, HaveTheDerivativesOfTheirDistances) {
   for (const auto& [name, shape] : all_shapes()) {
     int wrong = 0;
@@ -57,7 +59,8 @@ TEST(ContactShapes, HaveTheDerivativesOfTheirDistances) {
   }
 }
 
-// Outside and inside, with all derivatives; where two faces or edges are as near, either may count.
+// Compares a box with its hull, outside and inside, with all derivatives. Where two faces or edges are equally near,
+// either one may count.
 TEST(ContactShapes, ThatAreHullsOfBoxesAreTheBoxes) {
   const Vector3 half(0.3, 0.5, 0.2);
   const ContactShape box{Box{half}, kPlace}, hull{Hull{std::make_shared<Polytope>(box_polytope(half))}, kPlace};
@@ -84,7 +87,8 @@ TEST(ContactShapes, TouchAPlaneByThePointsOfAFace) {
   EXPECT_EQ(count({Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.4, 0.2}, 0.15))}, kPlace}, 10), 5);
 }
 
-// The nearest of many points of the surface; as far as these lie apart.
+// Compares the distance with that of the nearest of many surface points. The tolerance is the distance between these
+// points.
 TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
   const Box box{{0.3, 0.5, 0.2}};
   const Cylinder cylinder{0.3, 0.5};
@@ -111,7 +115,7 @@ TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
       double nearest = 1e9;
       for (const Vector3& each : surface) nearest = std::min(nearest, (each - point).norm());
       EXPECT_NEAR(std::abs(shape.distance(point).value), nearest, 0.012);
-      // On the surface at the end of the gradient.
+      // The point at the end of the gradient is on the surface.
       const SignedDistance here = shape.distance(point);
       EXPECT_NEAR(shape.distance(point - here.value * here.gradient).value, 0, 1e-14);
     }
@@ -124,7 +128,7 @@ TEST(ContactShapes, HaveTheirPointsOnTheirSurfaces) {
       EXPECT_NEAR(shape.distance(point.arm).value, -point.radius, 1e-15) << name;
 }
 
-// What is in a hole looks at its middle, and there is nothing between two places in it.
+// Inside a hole, the gradient points to its middle. There is nothing to pass through between two points in a hole.
 TEST(ContactShapes, AreHolesTurnedInsideOut) {
   for (const ContactShape& hole :
        {ContactShape{Ball{0.4}, kPlace, true}, ContactShape{Cylinder{0.4, 9}, kPlace, true}}) {
@@ -141,7 +145,7 @@ TEST(ContactShapes, AreHolesTurnedInsideOut) {
   }
 }
 
-// Their gradients there are unit vectors, so that what is pressed out goes somewhere.
+// In the middle of a shape the gradient is a unit vector, so that a penetrating point is pushed out in some direction.
 TEST(ContactShapes, HaveADirectionInTheirMiddles) {
   for (const auto& [name, shape] : all_shapes()) {
     const SignedDistance here = shape.distance(kPlace.position);

@@ -1,4 +1,4 @@
-// The additive weak form: rows conjugate to total rotation vectors.
+// Tests beams in the additive weak form, whose rows are conjugate to total rotation vectors.
 #include "elements/additive_beam.h"
 
 #include "elements/kernel_checks.h"
@@ -13,7 +13,7 @@ template <class Count>
 class AdditiveBeam : public ::testing::Test {};
 TYPED_TEST_SUITE(AdditiveBeam, NodeCounts);
 
-/// A random step with total rotation vectors.
+/// A random step with total rotation vectors at the nodes.
 template <int Nodes>
 struct AdditiveStep {
   RandomStep<Nodes> step;
@@ -37,7 +37,7 @@ struct AdditiveStep {
                                      bool with_tangent) const {
     return evaluate(endpoint_internal<Nodes>, nodes, rule, with_tangent, nullptr);
   }
-  /// Newmark's rotary inertia.
+  /// Rotary inertia by Newmark's rule.
   ElementSystem<Nodes> inertia(const ElementNodes<Nodes>& nodes, bool with_tangent, WeakForm form) const {
     ElementSystem<Nodes> system;
     system.set_zero();
@@ -53,7 +53,7 @@ struct AdditiveStep {
         });
     return system;
   }
-  /// Nodes with coordinate `column` of {r_i, theta_i} changed by h.
+  /// The nodes with coordinate `column` of {r_i, theta_i} changed by h.
   ElementNodes<Nodes> perturbed_vector(int column, double h) const {
     if (column % 6 < 3) return step.perturbed(column, h);
     ElementNodes<Nodes> out = step.nodes;
@@ -63,7 +63,7 @@ struct AdditiveStep {
     step.set_orientation(i, so3::exp_quaternion(theta) * step.reference_orientation[i], out);
     return out;
   }
-  /// The tangent in {r, theta} against differences of kernel(nodes, with_tangent).
+  /// Compares the tangent with respect to {r, theta} with differences of kernel(nodes, with_tangent).
   template <class Kernel>
   void expect_tangent_in_vectors(const Kernel& kernel) const {
     const ElementSystem<Nodes> system = kernel(step.nodes, true);
@@ -74,7 +74,7 @@ struct AdditiveStep {
       EXPECT_LE(largest(system.tangent.col(column) - expected), difference_tolerance * scale) << "column " << column;
     }
   }
-  /// The same after additive_to_spins, in {r, spin}.
+  /// The same with respect to {r, spin}, after additive_to_spins.
   template <class Kernel>
   void expect_tangent_in_spins(const Kernel& kernel) const {
     expect_consistent_tangent<Nodes>(step, [&](const ElementNodes<Nodes>& nodes, bool with) {
@@ -83,7 +83,7 @@ struct AdditiveStep {
       return system;
     });
   }
-  /// T_i^T on the moment rows.
+  /// Multiplies the moment rows by T_i^T.
   Eigen::Matrix<double, 6 * Nodes, 1> to_vectors(Eigen::Matrix<double, 6 * Nodes, 1> residual) const {
     for (int i = 0; i < Nodes; ++i)
       residual.template segment<3>(6 * i + 3) =
@@ -159,7 +159,7 @@ TYPED_TEST(AdditiveBeam, ResidualInSpinsIsTheAdditiveOneTurned) {
   EXPECT_LE(largest(additive.to_vectors(system.residual) - expected), kRoundOff * largest(expected));
 }
 
-// Where all nodes have turned alike, T is the same everywhere and both weak forms have the same rows.
+// If all nodes have the same rotation, T is the same everywhere, and both weak forms have the same rows.
 TYPED_TEST(AdditiveBeam, AgreesWithTheSpinFormWhereTheRotationIsUniform) {
   constexpr int N = TypeParam::value;
   RandomSource random(6);

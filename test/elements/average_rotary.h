@@ -1,12 +1,12 @@
 #pragma once
-/// Rotary inertia at the mass points by the average rule, as the momentum-conserving schemes have it.
+/// Rotary inertia at the mass points by the average rule, as in the momentum-conserving schemes.
 
 #include "elements/momentum_beam.h"
 #include "elements/rotary_inertia.h"
 
 namespace flexarm::test {
 
-/// What momentum_beam calls to add rotary inertia; keeps the motion at the end.
+/// Called by momentum_beam to add rotary inertia. Keeps the motion at the end of the step.
 template <int Nodes>
 struct AverageRotary {
   const BeamElement<Nodes>& element;
@@ -40,7 +40,7 @@ struct AverageRotary {
                 weight * (generalised.values[i].transpose() * rate.energy_gradient);
         });
   }
-  /// Rotary energy [J/m].
+  /// Rotary kinetic energy per length [J/m].
   double kinetic(int k, const MassPointState& state) const {
     return 0.5 * state.angular_velocity.dot(element.mass_points[k].inertia * state.angular_velocity);
   }

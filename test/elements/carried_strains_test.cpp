@@ -1,4 +1,4 @@
-// Strains that Newton's method carries along (docs/notes/newton.md).
+// Tests the strains that Newton's method carries from one iteration to the next (docs/notes/newton.md).
 #include "elements/conserving_kernel.h"
 #include "elements/endpoint_beam.h"
 #include "elements/kernel_checks.h"
@@ -23,7 +23,7 @@ Update<Nodes> random_update(RandomSource& random) {
   return update;
 }
 
-/// Nodes moved by h times an update.
+/// The nodes moved by h times an update.
 template <int Nodes>
 ElementNodes<Nodes> moved(const RandomStep<Nodes>& step, const Update<Nodes>& update, double h) {
   ElementNodes<Nodes> out = step.nodes;
@@ -42,7 +42,7 @@ double largest_entry(const CarriedStrains<Nodes>& strains) {
   return sum;
 }
 
-/// One element of the energy-momentum family.
+/// An element of the energy-momentum family.
 template <int Nodes>
 class Conserving {
  public:
@@ -50,7 +50,7 @@ class Conserving {
     functions_ = functions_at<Nodes>(step.element, step.begin_orientation);
   }
 
-  /// The strains of the nodes' configuration, and what an update adds to them to first order.
+  /// Strains of the nodes' configuration plus, to first order, their change by an update.
   CarriedStrains<Nodes> strains(const ElementNodes<Nodes>& nodes, const Update<Nodes>& update) const {
     KernelData<Nodes> data = data_at(nodes);
     std::array<Vector6T<Pack>, Nodes> moved;
@@ -66,8 +66,8 @@ class Conserving {
     carried.has_conjugate = data.carried.has_conjugate;
     return carried;
   }
-  /// Residual, tangent and, in ElementSystem::carried, what makes of the residual that in which the strains are
-  /// variables of their own.
+  /// Residual and tangent. ElementSystem::carried is the difference to the residual in which the strains are
+  /// independent variables.
   ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, const CarriedStrains<Nodes>* carried) const {
     KernelData<Nodes> data = data_at(nodes);
     if (carried) data.carry(*carried);
@@ -92,7 +92,7 @@ class Conserving {
   std::array<StrainMemory, Nodes - 1> memory_;
 };
 
-/// strains + h change.
+/// Returns strains + h change.
 template <int Nodes>
 CarriedStrains<Nodes> sum(const CarriedStrains<Nodes>& strains, const CarriedStrains<Nodes>& change, double h) {
   CarriedStrains<Nodes> out = strains;
@@ -157,7 +157,7 @@ TYPED_TEST(Carried, FollowAnUpdateInTheOtherFamilies) {
   }
 }
 
-// Strains as they are change nothing.
+// Carried strains that equal the strains of the configuration change neither residual nor tangent.
 TYPED_TEST(Carried, OfTheConfigurationItselfLeaveTheSystem) {
   constexpr int N = TypeParam::value;
   RandomSource random(3);
@@ -173,8 +173,8 @@ TYPED_TEST(Carried, OfTheConfigurationItselfLeaveTheSystem) {
   }
 }
 
-// With strains as variables of their own, M(u, e) = 0 and e = strains(u): an update that eliminates them has the
-// residual M + M_e (strains(u) - e) and the tangent M_u + M_e strains'(u). Both by differences of M.
+// With the strains e as independent variables, the equations are M(u, e) = 0 and e = strains(u). Eliminating e gives
+// the residual M + M_e (strains(u) - e) and the tangent M_u + M_e strains'(u). Both are compared with differences of M.
 TYPED_TEST(Carried, GiveNewtonsMethodForTheStrainsAsWell) {
   constexpr int N = TypeParam::value;
   constexpr double kSize = 0.3;
@@ -207,7 +207,7 @@ TYPED_TEST(Carried, GiveNewtonsMethodForTheStrainsAsWell) {
   }
 }
 
-/// The same for families whose stress has no more to it than the strains at the end.
+/// The same for families whose stress depends only on the strains at the end.
 template <int Nodes, class Evaluate>
 void expect_newtons_method(const RandomStep<Nodes>& step, RandomSource& random, const Evaluate& evaluate) {
   using Strains = std::array<Vector6, Nodes - 1>;

@@ -1,4 +1,4 @@
-// Beams over a step in the conserving family: tangents, momenta, energy, damping.
+// Tests beams of the energy-momentum family over a step: tangents, momenta, energy, damping.
 #include "elements/conserving_beam.h"
 
 #include "elements/conserving_kernel.h"
@@ -16,7 +16,8 @@ TimeRule conserving_rule(MidFunctions mid_functions = MidFunctions::Explicit) {
   return rule;
 }
 
-/// The multiplier of the energy, or none, is no parameter of templates: tests would be compiled twice.
+/// Evaluates an element with or without the energy multiplier. The multiplier is no template parameter, so that tests
+/// are compiled only once.
 template <int Nodes>
 ElementSystem<Nodes> evaluate(bool has_multiplier, const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes,
                               bool with_tangent, std::array<PointKinematics, Nodes - 1>* points = nullptr,
@@ -66,7 +67,7 @@ TYPED_TEST(ConservingBeam, TangentWithUnevenDamping) {
   expect_tangents<TypeParam::value>(true, 2, false);
 }
 
-// Resultant force and moment about the origin, with the mid-step arm, are the rates of the momenta of the translation.
+// Resultant force and moment about the origin, with the mid-step arms, equal the rates of the translational momenta.
 template <int Nodes>
 void expect_momentum_balance(bool has_multiplier) {
   RandomSource random(4);
@@ -110,15 +111,15 @@ TYPED_TEST(ConservingBeam, EnergyBalanceWithMultiplierIsExact) {
       }
 }
 
-// EM0 misses the balance by a third power of the increments: its test functions are those of the middle of the step.
-// (With Lagrange functions the defect would be of first order on a deformed element.)
+// The energy defect of EM0 is of third order in the increments, because its test functions belong to the middle of the
+// step. (Lagrange functions would give a defect of first order on a deformed element.)
 TYPED_TEST(ConservingBeam, EnergyDefectWithoutMultiplierIsOfThirdOrder) {
   constexpr int N = TypeParam::value;
-  // Root mean square over random steps: in a single one the leading coefficient may happen to be small.
+  // Root mean square over random steps, since the leading coefficient of a single step may happen to be small.
   const auto defect = [](double size, MidFunctions mid) {
     double sum = 0;
     for (unsigned seed = 0; seed < 30; ++seed) {
-      RandomSource random(seed);  // the same increments, scaled
+      RandomSource random(seed);  // the same increments at every size
       RandomStep<N> step(random, 0.1);
       step.element.mass.setZero();
       for (int i = 0; i < N; ++i) {
@@ -135,11 +136,11 @@ TYPED_TEST(ConservingBeam, EnergyDefectWithoutMultiplierIsOfThirdOrder) {
   };
   for (const MidFunctions mid : {MidFunctions::Explicit, MidFunctions::Symmetric})
     EXPECT_NEAR(defect(0.02, mid) / defect(0.01, mid), 8,
-                8 * 0.1);  // the next order is smaller by the increment's size
+                8 * 0.1);  // the next order is smaller by the factor of the increments' size
 }
 
-// About a step that turns the element as a whole, by any angle, the defect of EM0 is of second order in what else the
-// step does: the multiplier that makes up for it has a limit where the element comes to rest in itself.
+// Near a step that rotates the whole element by any angle, the defect of EM0 is of second order in the remaining
+// motion. So the multiplier that compensates the defect has a limit as the remaining motion vanishes.
 TYPED_TEST(ConservingBeam, EnergyDefectAboutARigidTurnIsOfSecondOrder) {
   constexpr int N = TypeParam::value;
   for (const double angle : {0.1, 1.0, 2.5}) {
@@ -169,7 +170,7 @@ TYPED_TEST(ConservingBeam, EnergyDefectAboutARigidTurnIsOfSecondOrder) {
   }
 }
 
-// The damping force alone does exactly the work that is counted as dissipated.
+// The work of the damping force alone equals the counted dissipation.
 template <int Nodes>
 void expect_exact_dissipation(bool has_multiplier, double stiffness_damping, double mass_damping, bool is_even = true) {
   RandomSource random(7);
@@ -192,7 +193,7 @@ TYPED_TEST(ConservingBeam, DampingDissipatesExactlyWhatIsCounted) {
   expect_exact_dissipation<N>(true, 0.2, 0.1, false);
 }
 
-// A step that turns and moves the element rigidly strains nothing, needs no multiplier and dissipates nothing.
+// A step of rigid motion gives no strain, needs no multiplier and dissipates nothing.
 TYPED_TEST(ConservingBeam, RigidStepKeepsStrains) {
   constexpr int N = TypeParam::value;
   RandomSource random(8);
@@ -213,7 +214,7 @@ TYPED_TEST(ConservingBeam, RigidStepKeepsStrains) {
   EXPECT_LE(largest(system.residual - base.residual), kRoundOff * largest(base.residual));
 }
 
-// The step seen from a turned frame: the forces turn with it.
+// If the step is seen from a rotated frame, the forces rotate with the frame.
 template <int Nodes>
 void expect_objective(bool has_multiplier) {
   RandomSource random(9);
@@ -233,7 +234,7 @@ TYPED_TEST(ConservingBeam, ForcesTurnWithTheObserver) {
   expect_objective<TypeParam::value>(true);
 }
 
-// At rest and undeformed nothing divides by zero.
+// An undeformed element at rest causes no division by zero.
 TYPED_TEST(ConservingBeam, UndeformedElementAtRest) {
   constexpr int N = TypeParam::value;
   RandomSource random(10);
@@ -250,7 +251,8 @@ TYPED_TEST(ConservingBeam, UndeformedElementAtRest) {
   EXPECT_TRUE(system.tangent.allFinite());
 }
 
-// The functions of the middle are held in the tangent: it is that of the same functions, given.
+// The tangent neglects the variation of symmetric middle functions. So it equals the tangent with the same functions
+// given as constants.
 template <int Nodes>
 void expect_average_functions(bool has_multiplier) {
   RandomSource random(11);
@@ -282,7 +284,7 @@ TYPED_TEST(ConservingBeam, SymmetricFunctionsAreThoseOfBothEnds) {
   expect_average_functions<TypeParam::value>(true);
 }
 
-// A step back from the end, with the velocities there, is the same step: it has the same forces.
+// A step back from the end with the velocities at the end is the same step, and has the same forces.
 template <int Nodes>
 void expect_time_reversible(bool has_multiplier) {
   RandomSource random(12);

@@ -1,5 +1,5 @@
 #pragma once
-/// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
+/// Wrapper of the energy-momentum kernel for tests: sets elements into lanes of a pack, and reads systems from them.
 
 #include "elements/conserving_beam.h"
 #include "elements/conserving_pack.h"
@@ -10,8 +10,8 @@
 
 namespace flexarm::test {
 
-/// Of a scheme with these options over kStep; damping relaxes over half of it, numerical dissipation (order 0: none)
-/// has the spectral radius 0.5.
+/// The rule of a scheme with these options over kStep. Damping has the relaxation time kStep/2. Numerical dissipation
+/// has the spectral radius 0.5; order 0 is without.
 inline TimeRule time_rule(bool is_corrected, MidFunctions mid, int dissipation_order) {
   TimeRule rule;
   rule.mid_functions = mid;
@@ -21,7 +21,7 @@ inline TimeRule time_rule(bool is_corrected, MidFunctions mid, int dissipation_o
   return rule;
 }
 
-/// What the kernel reads of one element.
+/// Input of the kernel for one element.
 template <int Nodes>
 struct LaneInput {
   const BeamElement<Nodes>& element;
@@ -31,7 +31,7 @@ struct LaneInput {
   const StrainMemory* memory;  // may be null
 };
 
-/// The same of the elements of a pack, and what comes out.
+/// Input and output of the kernel for the elements of a pack.
 template <int Nodes>
 struct KernelData {
   ConservingElement<Nodes, Pack> element;
@@ -44,7 +44,7 @@ struct KernelData {
   bool is_carried = false;
 
   KernelData() = default;
-  /// One element in all lanes: what ships runs on packs.
+  /// Puts one element into all lanes, because the kernel is compiled only for packs.
   explicit KernelData(const LaneInput<Nodes>& input) {
     for (int lane = 0; lane < Pack::kLanes; ++lane) set(lane, input);
   }
@@ -72,7 +72,7 @@ struct KernelData {
       set_lane(memory[k].delayed_rate, lane, from.delayed_rate);
     }
   }
-  /// Strains that are carried along, of all lanes.
+  /// Sets the carried strains of all lanes.
   void carry(const CarriedStrains<Nodes>& strains) {
     is_carried = true;
     carried.has_conjugate = strains.has_conjugate;
@@ -106,7 +106,7 @@ struct KernelData {
   }
 };
 
-/// One element by the kernel, with the multiplier of the energy or without.
+/// Evaluates one element by the kernel, with or without the energy multiplier.
 template <int Nodes>
 void conserving_beam(bool has_multiplier, const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
                      TimeRule rule, const ElementFunctions<Nodes>& functions, const PointKinematics* begin,
@@ -119,8 +119,8 @@ void conserving_beam(bool has_multiplier, const BeamElement<Nodes>& element, con
   data.get_end(0, end, end_memory);
 }
 
-/// Generalised shape functions of an element of the model, half-way from `orientation` by tangent-scaled increments,
-/// with the stretch.
+/// Generalised shape functions of an element with its stretch, half-way from `orientation` to the end by tangent-scaled
+/// increments.
 template <int Nodes>
 ElementFunctions<Nodes> functions_half_way(const BeamElement<Nodes>& element,
                                            const std::array<Quaternion, Nodes>& orientation,
@@ -133,7 +133,7 @@ ElementFunctions<Nodes> functions_half_way(const BeamElement<Nodes>& element,
   return functions;
 }
 
-/// The same at `orientation`.
+/// The same functions at `orientation`.
 template <int Nodes>
 ElementFunctions<Nodes> functions_at(const BeamElement<Nodes>& element,
                                      const std::array<Quaternion, Nodes>& orientation) {

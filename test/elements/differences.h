@@ -1,5 +1,5 @@
 #pragma once
-/// Derivatives by differences, for tests of tangents.
+/// Derivatives by finite differences, for tests of tangents.
 
 #include <cmath>
 
@@ -7,14 +7,15 @@
 
 namespace flexarm::test {
 
-/// Step of the differences for functions that vary over lengths and angles of order one.
+/// Step of the differences, for functions that vary over lengths and angles of order one.
 constexpr double difference_step = 0.01;
-/// Error of difference() for such functions, relative to the largest value or derivative. Truncation: h^6 / 64 = 2e-14
-/// times seventh derivatives over 7!; round-off: epsilon / (h / 4) = 1e-13 times the largest value. The margin is for
-/// the constants in both.
+/// Error of difference() for these functions, relative to the largest value or derivative. Truncation: h^6 / 64 = 2e-14
+/// times seventh derivatives over 7!. Round-off: epsilon / (h / 4) = 1e-13 times the largest value. The margin covers
+/// the constants of both.
 constexpr double difference_tolerance = 1e-10;
 
-/// df/dh at h = 0 of a vector- or matrix-valued f: central differences of three steps, extrapolated twice.
+/// df/dh at h = 0 of a vector- or matrix-valued function f, by central differences with three steps, extrapolated
+/// twice.
 template <class Function>
 auto difference(const Function& f, double step = difference_step) {
   using Value = std::decay_t<decltype(f(0.0))>;
@@ -24,7 +25,7 @@ auto difference(const Function& f, double step = difference_step) {
   return Value((16 * second - first) / 15);
 }
 
-/// The same for a number.
+/// The same for a scalar function.
 template <class Function>
 double scalar_difference(const Function& f, double step = difference_step) {
   using One = Eigen::Matrix<double, 1, 1>;

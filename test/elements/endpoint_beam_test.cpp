@@ -1,4 +1,4 @@
-// Beams at one configuration: statics and the Newmark family.
+// Tests beams at one configuration, for statics and the Newmark family.
 #include "elements/endpoint_beam.h"
 
 #include "elements/kernel_checks.h"
@@ -56,7 +56,7 @@ TYPED_TEST(EndpointBeam, TangentWithUnevenDamping) {
         step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &rule, with); });
 }
 
-// At t_{n+1+alpha} the strain rate is interpolated, and so is the velocity of mass-proportional damping.
+// At t_{n+1+alpha} the strain rate and the velocity of mass-proportional damping are interpolated.
 TYPED_TEST(EndpointBeam, TangentWithDampingOfInterpolatedKinematics) {
   constexpr int N = TypeParam::value;
   RandomSource random(10);
@@ -129,7 +129,7 @@ TYPED_TEST(EndpointBeam, StrainsUnchangedByRigidMotion) {
   for (int k = 0; k < N - 1; ++k) EXPECT_LE(largest(after[k].strain - before[k].strain), kRoundOff);
 }
 
-// Internal forces are in equilibrium: no resultant, no moment about the origin.
+// Internal forces are in equilibrium: the resultant force and the moment about the origin vanish.
 TYPED_TEST(EndpointBeam, InternalForcesBalance) {
   constexpr int N = TypeParam::value;
   RandomSource random(6);
@@ -145,8 +145,8 @@ TYPED_TEST(EndpointBeam, InternalForcesBalance) {
   EXPECT_LE(moment.norm(), kRoundOff * largest(system.residual));
 }
 
-// The static residual tested with the generalised variation is the gradient of the strain energy where the trial and
-// test functions agree: for a uniform spin and for translations. Translations: g_f = dV/dr.
+// The static residual uses the generalised variation as test functions. It is the gradient of the strain energy where
+// test and trial functions agree, here for translations: g_f = dV/dr.
 TYPED_TEST(EndpointBeam, ForcesAreTheGradientOfTheStrainEnergy) {
   constexpr int N = TypeParam::value;
   RandomSource random(7);
@@ -163,7 +163,7 @@ TYPED_TEST(EndpointBeam, ForcesAreTheGradientOfTheStrainEnergy) {
     }
 }
 
-// A constant strain rate over the step is found from rates that were already there.
+// Checks the formulas of Newmark's rule against their definition.
 TEST(NewmarkRule, AgreesWithItsDefinition) {
   RandomSource random(8);
   const Vector3 v0 = random.vector(), a0 = random.vector(), a1 = random.vector();
@@ -194,7 +194,7 @@ TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
                          new_rates.data(), system);
     double dissipated = 0;
     for (int k = 0; k < N - 1; ++k) {
-      // The strains are those at t_{n+1+alpha}, where the rate is (1 + alpha) new - alpha old.
+      // Strains are those at t_{n+1+alpha}, where the rate is (1 + alpha) new - alpha old.
       const Vector6 increment = rule.step * ((1 - rule.gamma) * rates[k] + rule.gamma * new_rates[k]);
       const Vector6 change = end[k].strain - step.begin_points[k].strain;
       EXPECT_LE(largest(change - (1 + rule.alpha) * increment), kRoundOff);
@@ -206,7 +206,8 @@ TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
   }
 }
 
-// Mass-proportional damping is the mass matrix on the velocities at t_{n+1+alpha}, and dissipates their work.
+// The force of mass-proportional damping is the mass matrix times the velocities at t_{n+1+alpha}. It dissipates its
+// work.
 TYPED_TEST(EndpointBeam, MassDamping) {
   constexpr int N = TypeParam::value;
   RandomSource random(12);

@@ -1,4 +1,4 @@
-// Rotations of an element by all interpolations: variation and curvature.
+// Tests the interpolated rotations of an element for all interpolations: variation and curvature.
 #include "elements/kernel_checks.h"
 
 namespace flexarm {
@@ -53,7 +53,8 @@ TYPED_TEST(ElementInterpolation, VariationFunctions) {
   });
 }
 
-// vee(Lambda^T dLambda/dx) along a parent coordinate, where the reference is a field that has a curvature of its own.
+// Compares the curvature with vee(Lambda^T dLambda/dx) along a parent coordinate. The reference rotation is a field
+// with curvature.
 TYPED_TEST(ElementInterpolation, CurvatureIsTheDerivativeOfTheRotation) {
   constexpr int N = TypeParam::value;
   for_each_interpolation<N>(2, kAllInterpolations, [](const RandomStep<N>& step) {
@@ -75,7 +76,8 @@ TYPED_TEST(ElementInterpolation, CurvatureIsTheDerivativeOfTheRotation) {
   });
 }
 
-// At a node the interpolation turns the reference by the node's own rotation; so all give the same at the nodes.
+// At a node, the interpolation rotates the reference by the node's own rotation. So all interpolations agree at the
+// nodes.
 TYPED_TEST(ElementInterpolation, PassesThroughTheNodes) {
   constexpr int N = TypeParam::value;
   for_each_interpolation<N>(3, kAllInterpolations, [](const RandomStep<N>& step) {
@@ -93,7 +95,8 @@ TYPED_TEST(ElementInterpolation, PassesThroughTheNodes) {
   });
 }
 
-// A common spin of all nodes turns the point alike only where the strain is invariant: the local interpolation.
+// A common spin of all nodes rotates the point by the same spin only if the interpolation is strain-invariant, i.e.
+// local.
 TYPED_TEST(ElementInterpolation, OnlyTheLocalOneIsStrainInvariant) {
   constexpr int N = TypeParam::value;
   for_each_interpolation<N>(4, kAllInterpolations, [](const RandomStep<N>& step) {
@@ -105,7 +108,7 @@ TYPED_TEST(ElementInterpolation, OnlyTheLocalOneIsStrainInvariant) {
       for (int i = 0; i < N; ++i) sum += functions.derivatives[i];
       defect = std::max(defect, largest(sum));
     }
-    // The iterative one is invariant to first order at every iterate.
+    // The iterative interpolation is invariant to first order at every iterate.
     if (step.interpolation == Interpolation::Local || step.interpolation == Interpolation::Iterative)
       EXPECT_LE(defect, 1e-12);
     else

@@ -1,3 +1,4 @@
+// Checks of tangents for the tests of elements; see kernel_checks.h.
 #include "elements/kernel_checks.h"
 
 namespace flexarm::test {

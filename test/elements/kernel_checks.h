@@ -1,5 +1,5 @@
 #pragma once
-/// What every beam kernel must satisfy.
+/// Checks of tangents, momenta and energies that are common to tests of all beam kernels.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ struct InterpolationChoice {
   RotationParameters parameters = RotationParameters::Unscaled;
 };
 
-/// Calls visit(step) for a random step with each of these interpolations.
+/// Calls visit(step) for one random step with each of these interpolations.
 template <int Nodes, int Count, class Visit>
 void for_each_interpolation(unsigned seed, const InterpolationChoice (&choices)[Count], const Visit& visit) {
   RandomSource random(seed);
@@ -28,18 +28,18 @@ void for_each_interpolation(unsigned seed, const InterpolationChoice (&choices)[
   }
 }
 
-/// Compares a tangent with differences of its residual, residual_at(column, h) where coordinate `column` is displaced
-/// by h. `size`: over what increment the residual changes its shape; the differences' step follows it, their round-off
-/// grows inversely. Sizes are no parameters of templates here: this is compiled once.
+/// Compares a tangent with differences of its residual, where residual_at(column, h) has coordinate `column` displaced
+/// by h. `size`: increment over which the residual is smooth. The step of the differences is proportional to it, their
+/// round-off inversely proportional. Takes matrices of dynamic size, so that it is compiled only once.
 void expect_consistent_tangent(const Eigen::MatrixXd& tangent, const Eigen::VectorXd& residual,
                                const std::function<Eigen::VectorXd(int column, double h)>& residual_at, double size);
 
-/// The same of kernel(nodes, with_tangent) -> ElementSystem.
+/// The same for kernel(nodes, with_tangent) -> ElementSystem.
 template <int Nodes, class Kernel>
 void expect_consistent_tangent(const RandomStep<Nodes>& step, const Kernel& kernel, double size = 1) {
   const ElementSystem<Nodes> system = kernel(step.nodes, true);
   EXPECT_LE(largest(kernel(step.nodes, false).residual - system.residual),
-            1e-13 * largest(system.residual));  // the same without a tangent
+            1e-13 * largest(system.residual));  // the residual is the same without a tangent
   expect_consistent_tangent(
       system.tangent, system.residual,
       [&](int column, double h) { return kernel(step.perturbed(column, h), false).residual; }, size);
@@ -76,7 +76,8 @@ Vector6 momenta(const BeamElement<Nodes>& element, const std::array<Vector3, Nod
   return sum;
 }
 
-/// Resultant {force, moment about the origin} of nodal forces and moments; `end_weight`: of the end in the arms.
+/// Resultant {force, moment about the origin} of nodal forces and moments. `end_weight`: weight of the end of the step
+/// in the arms.
 template <int Nodes>
 Vector6 resultant(const ElementNodes<Nodes>& nodes, const Eigen::Matrix<double, 6 * Nodes, 1>& forces,
                   double end_weight) {

@@ -1,4 +1,4 @@
-// Nodal loads.
+// Tests nodal loads and pulls: derivatives and work.
 #include "elements/load.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,8 @@ TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
     }
 }
 
-// A pull's slope has the same three parts: the force, its lever, and the turn of the lever.
+// The derivative of a pull has the same three parts as that of a load: change of the force, of its arm, and rotation of
+// the arm.
 TEST(PullAction, Tangent) {
   RandomSource random(4);
   for (const double step : {0.0, 0.01})
@@ -62,7 +63,8 @@ TEST(PullAction, Tangent) {
     }
 }
 
-// Of the mean force over the step along the way of the point: what the spring loses, less what the damper takes.
+// The work of the mean force over the displacement of the point equals the energy that the spring loses, less the
+// dissipation of the damper.
 TEST(PullAction, Work) {
   RandomSource random(5);
   NodalLoad load = random_load(random, false);
@@ -90,7 +92,7 @@ TEST(LoadAction, ForceAtAnArm) {
   EXPECT_LE((follower.tail<3>() - 2 * rotation * (load.moment + load.arm.cross(load.force))).norm(), 1e-14);
 }
 
-// A dead force does the work F . Delta x of its point over the step, whatever the rotation.
+// A dead force does the work F . Delta x of its point over the step, for any rotation.
 TEST(LoadAction, WorkOfADeadForceIsExact) {
   RandomSource random(3);
   NodalLoad load = random_load(random, false);

@@ -1,4 +1,4 @@
-// Beams of the momentum-conserving schemes and of those with an energy correction by forces.
+// Tests beams of the momentum-conserving schemes, with and without an energy correction.
 #include "elements/momentum_beam.h"
 
 #include "elements/average_rotary.h"
@@ -15,7 +15,7 @@ template <class Count>
 class MomentumBeam : public ::testing::Test {};
 TYPED_TEST_SUITE(MomentumBeam, NodeCounts);
 
-/// One scheme on a random step, with rotary inertia at the mass points.
+/// A scheme on a random step, with rotary inertia at the mass points.
 template <int Nodes>
 struct MomentumStep {
   Scheme scheme;
@@ -132,14 +132,14 @@ TYPED_TEST(MomentumBeam, TangentsWithGlobalInterpolations) {
   for (const char* name : kAll)
     for (const Interpolation interpolation :
          {Interpolation::Total, Interpolation::Incremental, Interpolation::Iterative}) {
-      if (std::string_view(name) == "std") continue;  // has its own
+      if (std::string_view(name) == "std") continue;  // std has its own interpolation
       MomentumStep<N> momentum(name, random, 0.5, interpolation);
       SCOPED_TRACE(static_cast<int>(interpolation));
       expect_tangent<N>(momentum, 1);
     }
 }
 
-// Increment . residual is the change of all energy of the element, and what damping dissipates.
+// Increment . residual equals the change of the element's total energy plus the dissipation.
 template <int Nodes>
 void expect_energy_balance(const char* name, double size, double damping, RandomSource& random,
                            Interpolation interpolation = Interpolation::Local) {
@@ -163,7 +163,8 @@ TYPED_TEST(MomentumBeam, EnergyBalanceIsExact) {
       expect_energy_balance<TypeParam::value>(name, 0.3, 0.2, random, interpolation);
 }
 
-// Resultant force and moment are the rates of the momenta, with the arms of the middle, or of the beginning (M2).
+// Resultant force and moment are the rates of the momenta, with arms in the middle of the step, or at the beginning
+// (M2).
 TYPED_TEST(MomentumBeam, MomentaBalance) {
   constexpr int N = TypeParam::value;
   RandomSource random(5);
@@ -181,7 +182,7 @@ TYPED_TEST(MomentumBeam, MomentaBalance) {
     }
 }
 
-// The damping force alone does exactly the work that is counted as dissipated.
+// The work of the damping force alone equals the counted dissipation.
 TYPED_TEST(MomentumBeam, DampingDissipatesExactlyWhatIsCounted) {
   constexpr int N = TypeParam::value;
   RandomSource random(6);
@@ -200,7 +201,7 @@ TYPED_TEST(MomentumBeam, DampingDissipatesExactlyWhatIsCounted) {
     }
 }
 
-// Seen from a turned frame the forces turn with it: local interpolation.
+// Seen from a rotated frame, the forces rotate with the frame. This holds for the local interpolation.
 TYPED_TEST(MomentumBeam, ForcesTurnWithTheObserver) {
   constexpr int N = TypeParam::value;
   RandomSource random(7);
@@ -220,7 +221,7 @@ TYPED_TEST(MomentumBeam, ForcesTurnWithTheObserver) {
   }
 }
 
-// At rest and undeformed the correction has no direction, and nothing divides by zero.
+// For an undeformed element at rest, the correction has no direction; this causes no division by zero.
 TYPED_TEST(MomentumBeam, UndeformedElementAtRest) {
   constexpr int N = TypeParam::value;
   RandomSource random(8);

@@ -1,4 +1,4 @@
-// Rigid bodies at nodes.
+// Tests the inertia and mass-proportional damping of rigid bodies at nodes, for all schemes.
 #include "elements/nodal_inertia.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ class ConservingNodalInertia : public NodalInertiaTest {};
 class TangentScaledNodalInertia : public NodalInertiaTest {};
 class NewmarkNodalInertia : public NodalInertiaTest {};
 
-/// Tangent of evaluate(step) -> NodalAction against differences of its residual.
+/// Compares the tangent of evaluate(step) -> NodalAction with differences of its residual.
 template <class Evaluate>
 void expect_tangent(const NodeSample& sample, const Evaluate& evaluate) {
   const NodalAction action = evaluate(sample.step());
@@ -90,12 +90,12 @@ TEST_P(NodalInertiaTest, Tangents) {
   }
 }
 
-/// The rotary inertia that the scheme has at a node.
+/// The rotary inertia at a node in this scheme.
 Matrix3 nodal_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return inertia.rotary + (scheme.nodal_rotary_inertia ? inertia.beam_rotary : Matrix3::Zero());
 }
 
-// The residual belongs to the velocities that the step ends with: momentum rates, or accelerations.
+// The residual belongs to the velocities at the end of the step: it contains rates of momenta, or accelerations.
 TEST_P(NodalInertiaTest, BalanceWithAdvancedState) {
   RandomSource random(2);
   const Scheme& scheme = GetParam();
@@ -109,7 +109,7 @@ TEST_P(NodalInertiaTest, BalanceWithAdvancedState) {
   Vector6 expected;
   if (scheme.is_incremental())
     expected << inertia.mass / kStep * (after.velocity - sample.state.velocity), change / kStep;
-  else if (scheme.hht != HhtForm::None)  // momentum rates by the rule of Newmark's velocities
+  else if (scheme.hht != HhtForm::None)  // momentum rates follow the rule of Newmark's velocities
     expected << inertia.mass * after.acceleration,
         (change / kStep - (1 - scheme.gamma) * sample.momentum_rate) / scheme.gamma;
   else
@@ -120,7 +120,7 @@ TEST_P(NodalInertiaTest, BalanceWithAdvancedState) {
   EXPECT_EQ(after.orientation.coeffs(), sample.end.orientation.coeffs());
 }
 
-// (v_0 + v_1)/2 = Delta r / h and (W_0 + W_1)/2 = Omega / h; M2 has v_1 = Delta r / h.
+// The rule: (v_0 + v_1)/2 = Delta r / h and (W_0 + W_1)/2 = Omega / h; M2 has v_1 = Delta r / h.
 TEST_P(ConservingNodalInertia, VelocitiesFollowTheRule) {
   const Scheme& scheme = GetParam();
   RandomSource random(3);
@@ -136,7 +136,8 @@ TEST_P(ConservingNodalInertia, VelocitiesFollowTheRule) {
   EXPECT_LE((kStep * (sample.begin.rotation * spin) - increment).norm(), 1e-14);
 }
 
-// x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) a_0 + beta a_1), v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1), rotations alike.
+// The rule: x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) a_0 + beta a_1), v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1), and the
+// same for rotations.
 TEST_P(NewmarkNodalInertia, VelocitiesFollowTheRule) {
   const Scheme& scheme = GetParam();
   RandomSource random(3);
@@ -155,14 +156,14 @@ TEST_P(NewmarkNodalInertia, VelocitiesFollowTheRule) {
               after.angular_acceleration);
 }
 
-// Only tangent-scaled increments can: those that joints map.
+// Only schemes with tangent-scaled increments, which joints map, may claim to conserve the energy.
 TEST_P(NodalInertiaTest, EnergyIsClaimedWithTangentScaledIncrementsOnly) {
   const Scheme& scheme = GetParam();
   EXPECT_TRUE(!scheme.conserves_energy ||
               (scheme.is_incremental() && scheme.body_rotation == RotationRule::TangentScaled));
 }
 
-// With them the work on a body is exactly the change of its kinetic energy.
+// With these increments, the work on a body is exactly the change of its kinetic energy.
 TEST_P(TangentScaledNodalInertia, WorkIsTheChangeOfKineticEnergy) {
   const Scheme& scheme = GetParam();
   RandomSource random(4);
@@ -177,7 +178,7 @@ TEST_P(TangentScaledNodalInertia, WorkIsTheChangeOfKineticEnergy) {
               energy(after) - energy(sample.state), 1e-12 * (energy(after) + energy(sample.state)));
 }
 
-// M2 loses the energy of half the change of the velocity, squared.
+// M2 loses the kinetic energy of half the velocity change.
 TEST(NodalInertia, BackwardVelocityDissipates) {
   RandomSource random(5);
   const Scheme scheme = *find_scheme("m2");
@@ -206,7 +207,7 @@ TEST_P(NodalInertiaTest, DampingDissipatesExactlyWhatIsCounted) {
     EXPECT_NEAR(sample.work(action.residual), action.dissipated, 1e-13 * action.dissipated);
     return;
   }
-  // At the end; HHT3: interpolated between the moments D W of both ends.
+  // Here the damping moment acts at the end; with HHT3, it is interpolated between the moments D W at both ends.
   const auto moment = [&](const NodePose& pose, const NodeState& state) {
     return Vector3(pose.rotation * (inertia.rotary_damping * state.angular_velocity));
   };

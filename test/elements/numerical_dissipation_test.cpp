@@ -1,4 +1,4 @@
-// Dampers with a memory of the energy-momentum family: numerical dissipation and structural damping.
+// Tests dampers with memory in the energy-momentum family: numerical dissipation and structural damping.
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
 #include "elements/tested_step.h"
@@ -16,7 +16,7 @@ TYPED_TEST_SUITE(DissipativeBeam, NodeCounts);
 template <int Nodes>
 using Memory = std::array<StrainMemory, Nodes - 1>;
 
-/// As a past could have left it: only the second-order rule keeps an average.
+/// A memory as a past motion could have left it. Only the second-order rule keeps an average.
 template <int Nodes>
 Memory<Nodes> random_memory(RandomSource& random, int order, double size) {
   Memory<Nodes> memory;
@@ -28,7 +28,7 @@ Memory<Nodes> random_memory(RandomSource& random, int order, double size) {
   return memory;
 }
 
-/// Order 0: none.
+/// A rule with numerical dissipation; order 0 is without.
 TimeRule dissipative_rule(int order, double rho, double relaxation = 0) {
   TimeRule rule;
   if (order > 0) rule.dissipation = numerical_dissipation(order, rho, kStep);
@@ -36,7 +36,7 @@ TimeRule dissipative_rule(int order, double rho, double relaxation = 0) {
   return rule;
 }
 
-/// Structural damping, docs/schemes.md: delta = eta/4 min(eta/h_0, 1) [s], and delta h_0 [s^2].
+/// Constants of structural damping, docs/schemes.md: delta = eta/4 min(eta/h_0, 1) [s], and delta h_0 [s^2].
 double delayed_dashpot_of(double viscosity, double relaxation) {
   return relaxation > 0 ? 0.25 * viscosity * std::min(viscosity / relaxation, 1.0) : 0;
 }
@@ -81,8 +81,8 @@ TYPED_TEST(DissipativeBeam, Tangent) {
     }
 }
 
-/// (stiffness / forgetting y.Cy + inertance w.Cw) / 2 over the element, and inertance (w.Cw + q.Cq) / 2 of structural
-/// damping.
+/// Energy stored in the memory of an element: (stiffness / forgetting y.Cy + inertance w.Cw) / 2, and inertance (w.Cw +
+/// q.Cq) / 2 for structural damping.
 template <int Nodes>
 double stored(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory) {
   const NumericalDissipation& d = rule.dissipation;
@@ -111,7 +111,7 @@ void expect_exact_budget(RandomSource& random, const TimeRule& rule, int order, 
               kRoundOff * (before + after + largest(system.residual) * size * 6 * Nodes));
 }
 
-// Increment . internal forces = change of strain energy and of what the memory stores + dissipated.
+// Increment . internal forces = change of strain energy + change of the energy stored in the memory + dissipation.
 TYPED_TEST(DissipativeBeam, BudgetIsExact) {
   RandomSource random(2);
   for (const int order : {1, 2})
@@ -124,8 +124,8 @@ TYPED_TEST(DissipativeBeam, BudgetIsExact) {
         }
 }
 
-// The same with structural damping from weak to strong, in steps of the relaxation time, in halved ones, and without
-// relaxation.
+// The same with structural damping from weak to strong, with steps of the relaxation time and of half of it, and
+// without relaxation.
 TYPED_TEST(DissipativeBeam, BudgetOfDampingIsExact) {
   RandomSource random(5);
   for (const int order : {0, 2})
@@ -146,7 +146,7 @@ TYPED_TEST(DissipativeBeam, MomentaBalance) {
   }
 }
 
-// The definition: y_1 = y_0 + forgetting (s - y_0), (w_0 + w_1)/2 = s/h; with one strain increment s for both.
+// Definition: y_1 = y_0 + forgetting (s - y_0), (w_0 + w_1)/2 = s/h, with the same strain increment s.
 TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
   constexpr int N = TypeParam::value;
   RandomSource random(4);
@@ -161,8 +161,8 @@ TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
   }
 }
 
-// The definition: (q_0 + q_1)/2 + (h_0/h) (q_1 - q_0) = s/h = (w_0 + w_1)/2, and the stress
-// C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean] is what does the work of damping.
+// Definition: (q_0 + q_1)/2 + (h_0/h) (q_1 - q_0) = s/h = (w_0 + w_1)/2. The stress C [dashpot s/h + inertance (w_1 -
+// w_0)/h + delayed q_mean] does the work of damping.
 TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
   constexpr int N = TypeParam::value;
   RandomSource random(6);
@@ -194,8 +194,8 @@ TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
   }
 }
 
-// A massless spring of unit stiffness, the limit of infinite frequency: (x_0 + x_1)/2 + stiffness (s - y_0) + inertance
-// (w_1 - w_0)/h = 0. All roots of the step are -rho: the characteristic polynomial is (z + rho)^n.
+// A massless spring of unit stiffness is the limit of infinite frequency: (x_0 + x_1)/2 + stiffness (s - y_0) +
+// inertance (w_1 - w_0)/h = 0. All eigenvalues of a step are -rho: the characteristic polynomial is (z + rho)^n.
 TEST(NumericalDissipation, SpectralRadiusAtInfiniteFrequency) {
   for (const int order : {1, 2})
     for (const double rho : {0.0, 0.4, 0.8}) {
@@ -206,7 +206,7 @@ TEST(NumericalDissipation, SpectralRadiusAtInfiniteFrequency) {
       map.row(0) = Vector3::UnitX() + s;
       map.row(1) = Vector3::UnitY() + d.forgetting * (s - Vector3::UnitY());
       map.row(2) = 2 / kStep * s - Vector3::UnitZ();
-      if (order == 1) {  // keeps no average
+      if (order == 1) {  // order 1 keeps no average
         map.row(1).setZero();
         map.col(1).setZero();
       }

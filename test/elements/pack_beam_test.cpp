@@ -1,4 +1,4 @@
-// Kernels of the energy-momentum family on packs: every lane has what its element has in all of them.
+// Tests the energy-momentum kernels on packs: each lane gives the same result as its element in all lanes.
 #include <limits>
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Increments of the second lane.
+/// Size of the increments in the second lane.
 constexpr double kSmallStep = 1e-3;
 
 struct PackOptions {
@@ -32,7 +32,8 @@ const PackOptions kPackOptions[] = {
     {true, true, true, MidFunctions::Explicit, 2},
 };
 
-/// Four elements: a large step, a small one, rest, and nodes that turn far from each other.
+/// Four elements: one with a large step, one with a small step, one at rest, and one whose nodes rotate far relative to
+/// each other.
 template <int Nodes>
 class Lanes {
  public:
@@ -47,7 +48,8 @@ class Lanes {
       if (options.is_damped) step.element.stiffness_damping = step.element.mass_damping = 0.1 * (lane + 1);
       if (!options.is_coupled) {
         for (auto& point : step.element.stiffness_points) {
-          point.stiffness = step.element.stiffness_points[0].stiffness;  // uniform, too
+          // The stiffness is also uniform along the element
+          point.stiffness = step.element.stiffness_points[0].stiffness;
           point.stiffness.template topRightCorner<3, 3>().setZero();
           point.stiffness.template bottomLeftCorner<3, 3>().setZero();
         }
@@ -61,7 +63,7 @@ class Lanes {
     const RandomStep<Nodes>& step = *steps_[lane];
     return {step.element, step.nodes, functions_[lane], step.begin_points.data(), memory_[lane].data()};
   }
-  /// Lane l of the pack is element (l + shift) % 4.
+  /// Puts element (l + shift) % 4 into lane l.
   void fill(int shift, KernelData<Nodes>& data) const {
     for (int lane = 0; lane < Pack::kLanes; ++lane) data.set(lane, input((lane + shift) % Pack::kLanes));
   }
@@ -87,7 +89,7 @@ class Lanes {
   std::array<std::array<StrainMemory, Nodes - 1>, Pack::kLanes> memory_;
 };
 
-/// What comes out for one element.
+/// Results for one element.
 template <int Nodes>
 struct Output {
   ElementSystem<Nodes> system;
@@ -106,7 +108,7 @@ struct Output {
   }
 };
 
-/// Kernels are compiled for several processors; until its end they run as this one would run them.
+/// Kernels are compiled for several kinds of processors. While this object lives, they run in the given version.
 class As {
  public:
   explicit As(simd::Version version) { simd::version = version; }
@@ -115,7 +117,7 @@ class As {
   As& operator=(const As&) = delete;
 };
 
-/// Those that the processor at hand can run.
+/// The versions that this processor can run.
 std::vector<simd::Version> versions() {
   std::vector<simd::Version> out;
   for (const simd::Version version : {simd::Version::Baseline, simd::Version::Wide})
@@ -143,8 +145,8 @@ TYPED_TEST(PackBeam, LanesAreSingleElements) {
         KernelData<N> single(lanes.input(lane));
         single.evaluate(lanes.rule(), kStep, true);
         const Output<N> expected(single, 0), actual(pack, lane);
-        // The multiplier divides an absolute round-off by the square of the increments, then multiplies by them; its
-        // derivative divides once more.
+        // The multiplier divides an absolute round-off by the square of the increments, and is multiplied by the
+        // increments. Its derivative is divided once more.
         const double size = options.is_corrected && lane == 1 ? kSmallStep : 1;
         EXPECT_LE(largest(actual.system.residual - expected.system.residual),
                   kRoundOff / size * largest(expected.system.residual))
@@ -171,7 +173,8 @@ TYPED_TEST(PackBeam, LanesAreSingleElements) {
   }
 }
 
-// Bit by bit: neither its lane nor its neighbours matter to an element, not even one that is not a number.
+// Bit for bit, an element's result depends neither on its lane nor on the other lanes, not even if another lane is not
+// a number.
 TYPED_TEST(PackBeam, LanesDoNotFeelEachOther) {
   constexpr int N = TypeParam::value;
   for (const PackOptions& options : kPackOptions) {
@@ -191,7 +194,7 @@ TYPED_TEST(PackBeam, LanesDoNotFeelEachOther) {
   }
 }
 
-// Else the tests above would see one version only: with fused multiply-add round-off is another one.
+// Ensures that the tests above run different versions: round-off differs with fused multiply-add.
 TEST(PackBeamVersions, AreThoseThatAreAskedFor) {
   if (simd::best_version() == simd::Version::Baseline) GTEST_SKIP() << "this processor, or compiler, has one version";
   const Lanes<3> lanes(kPackOptions[0]);

@@ -1,4 +1,4 @@
-// The planar kernel of the energy-momentum family is that of three dimensions, seen in the plane.
+// Tests that the planar kernel of the energy-momentum family equals the three-dimensional kernel for motion in a plane.
 #include "elements/planar_beam.h"
 #include "elements/conserving_kernel.h"
 #include "elements/random_planar_step.h"
@@ -13,7 +13,7 @@ struct PlanarOptions {
   bool is_corrected, is_damped;
   MidFunctions mid = MidFunctions::Explicit;
   int dissipation_order = 0;
-  double size = 0.5;  // of the step
+  double size = 0.5;  // size of the step's increments
 
   TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order); }
 };
@@ -44,7 +44,7 @@ struct PlanarStep : RandomPlanarStep<Nodes> {
 
   double increment(int i) const { return 2 * std::tan(0.5 * (end_angle[i] - begin_angle[i])); }
 
-  /// By the kernel of three dimensions: {f_1, f_2, phi} and blocks of the nodes.
+  /// Forces {f_1, f_2, phi} and blocks of the nodes by the three-dimensional kernel.
   ElementSystem<Nodes> in_three_dimensions(bool with_tangent) {
     std::array<Quaternion, Nodes> begin_orientation;
     std::array<Vector3, Nodes> turns;
@@ -143,7 +143,7 @@ TYPED_TEST(PlanarBeam, IsTheKernelOfThreeDimensionsSeenInThePlane) {
       step.is_carried = is_carried;
       const ElementSystem<N> space = step.in_three_dimensions(true);
       const planar::BlockSystem<N> plane = step.in_plane(true);
-      // The energy multiplier divides round-off of the work by relative turns, its derivative by their squares.
+      // The energy multiplier divides the round-off of the work by relative rotations, its derivative by their squares.
       const double turn = options.is_corrected ? 0.5 * options.size : 1.0;
       const double scale = std::max(largest(space.residual), 1.0) / turn,
                    slope = largest(space.tangent) / (turn * turn);

@@ -1,3 +1,4 @@
+// Tests springs between points: the tangent against differences, momentum and work.
 #include "elements/point_spring.h"
 
 #include <gtest/gtest.h>
@@ -13,11 +14,8 @@ using Poses = std::vector<NodePose>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-NodePose turned_node(const Vector3& position, const Vector3& rotation) {
-  return node_at(position, so3::exp_quaternion(rotation));
-}
-
-/// What the spring between node 1 and node 0, or the world, adds to a step; its nodes are {0, 1}.
+/// Residual, tangent and dissipation of a spring over a step. It acts between node 1 and node 0, or the world; its
+/// nodes are {0, 1}.
 class PointSprings : public ::testing::TestWithParam<bool> {
  protected:
   struct Action {
@@ -44,7 +42,8 @@ class PointSprings : public ::testing::TestWithParam<bool> {
     return out;
   }
 
-  // Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
+  // Central differences with the step 1e-6 have truncation errors of 1e-12 times third derivatives, and round-off of
+  // 1e-16 / 1e-6 times the forces.
   void expect_tangent(const PointSpring& spring) const {
     const Action here = action(end, spring);
     constexpr double h = 1e-6;
@@ -88,9 +87,9 @@ TEST_P(PointSprings, AddToNoMomentum) {
   EXPECT_LE(moment.norm(), 1e-13 * child.norm());
 }
 
-// What its mean force does over the step is what it stores and dissipates, to round-off.
+// The work of the mean force over the step equals the change of energy and the dissipation, to round-off.
 TEST_P(PointSprings, OfMeansDoExactWork) {
-  if (GetParam()) return;  // forces at the end do not
+  if (GetParam()) return;  // does not hold for forces at the end
   for (const PointSpring* spring : {&between, &to_world}) {
     const Action here = action(end, *spring);
     double work = 0;

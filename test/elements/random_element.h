@@ -1,5 +1,5 @@
 #pragma once
-/// Random elements and steps of theirs, for tests of kernels.
+/// Random beam elements and random steps of them, for tests of kernels.
 
 #include <random>
 
@@ -25,8 +25,8 @@ class RandomSource {
     return v;
   }
   Vector3 unit() { return vector().normalized(); }
-  /// By an angle up to `angle`. Compilers differ in which factor of a product they evaluate first: one after the other,
-  /// the numbers are the same everywhere.
+  /// A rotation by a random angle up to `angle`. Compilers differ in the order in which they evaluate factors, so the
+  /// numbers are drawn in separate statements.
   Quaternion rotation(double angle) {
     const Vector3 axis = unit();
     return so3::exp_quaternion(Vector3(angle * number() * axis));
@@ -44,7 +44,7 @@ class RandomSource {
   std::uniform_real_distribution<double> uniform_{-1, 1};
 };
 
-/// Which rotation vector a node has from its reference: of two that give the same rotation the one nearer to another.
+/// The rotation vector of `relative` that is nearer to `other`: two rotation vectors give the same rotation.
 inline Vector3 nearest_vector(const Quaternion& relative, const Vector3& other) {
   const Vector3 theta = so3::log(relative);
   const double angle = theta.norm();
@@ -53,14 +53,13 @@ inline Vector3 nearest_vector(const Quaternion& relative, const Vector3& other) 
   return (theta - other).norm() <= (around - other).norm() ? theta : around;
 }
 
-/// An element with a curved, twisted undeformed line and full section matrices that change along it, over a random
-/// step. Local
-/// interpolation, unless set_interpolation() chooses another.
+/// A random step of an element with a curved and twisted undeformed line. Its section matrices are full and change
+/// along the line. The interpolation is local, unless set_interpolation() chooses another one.
 template <int Nodes>
 struct RandomStep {
   using Element = BeamElement<Nodes>;
 
-  /// `size`: of the rotation and displacement increments.
+  /// `size`: size of the rotation and displacement increments.
   RandomStep(RandomSource& random, double size) {
     BeamMesh mesh;
     mesh.order = Nodes - 1;
@@ -80,7 +79,7 @@ struct RandomStep {
       undeformed_orientation[i] = pose.orientation;
     }
     element = beam_element<Nodes>(mesh, in_mesh, scene::BeamDescription());
-    // A section that changes along the line, by another amount at every point.
+    // The section changes along the line, by a different amount at every point.
     for (int k = 1; k < Element::kStiffnessPoints; ++k) element.stiffness_points[k].stiffness *= 1 + 0.2 * k;
     for (int k = 1; k < Element::kMassPoints; ++k) element.mass_points[k].inertia *= 1 + 0.1 * k;
 
@@ -99,17 +98,18 @@ struct RandomStep {
     set_begin_points();
     for (MassPointState& state : mass_points) state = {random.vector(), random.vector()};
   }
-  /// Every strain another amount, one of them nothing.
+  /// Sets a different damping for each strain, one of them zero.
   void damp_unevenly(double stiffness_damping) {
     element.stiffness_damping = stiffness_damping;
     element.damping_scale << 1, 0.7, 0.2, 0.9, 0, 0.5;
   }
-  // The nodes point into this object.
+  // Not copyable, because `nodes` has pointers into this object.
   RandomStep(const RandomStep&) = delete;
   RandomStep& operator=(const RandomStep&) = delete;
 
-  /// Measures rotations from a reference: the undeformed element (total), the beginning (incremental) or the end of the
-  /// step (iterative). The latter two depend on the past, which gives every point a rotation of its own.
+  /// Sets the reference from which rotations are measured: the undeformed element (total), the beginning (incremental),
+  /// or the end of the step (iterative). The latter two depend on past motion, which is simulated by a random rotation
+  /// of each point.
   void set_interpolation(RandomSource& random, Interpolation chosen,
                          RotationParameters parameters = RotationParameters::Unscaled) {
     interpolation = chosen;
@@ -137,7 +137,7 @@ struct RandomStep {
     set_begin_points();
   }
 
-  /// The interpolation at the beginning.
+  /// The nodes with the end set to the beginning of the step.
   ElementNodes<Nodes> nodes_at_begin() const {
     ElementNodes<Nodes> out = nodes;
     out.end = out.begin;
@@ -161,7 +161,7 @@ struct RandomStep {
     }
   }
 
-  /// The same step as an observer in a turned frame sees it.
+  /// The same step, seen by an observer in a rotated frame.
   void turn(const Quaternion& rotation) {
     for (int i = 0; i < Nodes; ++i) {
       nodes.begin[i] = rotation * nodes.begin[i];
@@ -183,7 +183,7 @@ struct RandomStep {
                                 ? cayley::increment(relative)
                                 : nearest_vector(relative, of.rotation_vector[i]);
   }
-  /// Nodes at the end displaced by h along coordinate `column` of {dr_0, spin_0, dr_1, ...}.
+  /// The nodes with the end displaced by h along coordinate `column` of {dr_0, spin_0, dr_1, ...}.
   ElementNodes<Nodes> perturbed(int column, double h) const {
     ElementNodes<Nodes> out = nodes;
     const int i = column / 6, k = column % 6;
@@ -201,7 +201,7 @@ struct RandomStep {
              forces.template segment<3>(6 * i + 3).dot(nodes.increment[i]);
     return sum;
   }
-  /// Strain energy of given stiffness points.
+  /// Strain energy of the given stiffness points.
   double strain_energy(const std::array<PointKinematics, Element::kStiffnessPoints>& points) const {
     double energy = 0;
     for (int k = 0; k < Element::kStiffnessPoints; ++k)

@@ -1,5 +1,5 @@
 #pragma once
-/// A random element in a plane over a random step, for tests of planar kernels.
+/// A random step of an element that moves in a plane, for tests of planar kernels.
 
 #include "elements/kernel_checks.h"
 #include "elements/planar_element.h"
@@ -7,10 +7,11 @@
 
 namespace flexarm::test {
 
-/// Of planar kernels beside those of three dimensions: sums of some hundred terms, relative to the largest.
+/// Tolerance between planar and three-dimensional kernels: round-off of some hundred terms, relative to the largest
+/// one.
 constexpr double kPlanarRoundOff = 1e-13;
 
-/// A step of a curved element with a full section, all in one plane that lies anyhow.
+/// A random step of a curved element with a full section, in a plane of random orientation.
 template <int Nodes>
 struct RandomPlanarStep {
   RandomPlanarStep(RandomSource& random, double size) : size(size) {
@@ -19,7 +20,7 @@ struct RandomPlanarStep {
     height = random.number();
     plane.frames.assign(Nodes, random.rotation(3.0));
     basis = plane.strain_basis(0);
-    RandomStep<Nodes> any(random, 0.1);  // for its shape functions
+    RandomStep<Nodes> any(random, 0.1);  // only its shape functions are used
     element = any.element;
     const Eigen::Matrix<double, 6, 3> rest = basis_out_of_plane();
     for (auto& point : element.stiffness_points) {
@@ -41,7 +42,7 @@ struct RandomPlanarStep {
     }
   }
 
-  /// Columns of the other strains.
+  /// Basis of the strains out of the plane, in columns.
   Eigen::Matrix<double, 6, 3> basis_out_of_plane() const {
     Eigen::Matrix<double, 6, 3> rest = Eigen::Matrix<double, 6, 3>::Zero();
     rest.col(0).template head<3>() = plane.material_normal(0);
@@ -56,7 +57,7 @@ struct RandomPlanarStep {
   PlanarPose pose(const Vector2& position, double angle) const {
     return plane.pose(0, in_space(position, height), turned(angle));
   }
-  /// Node i moved along {dx, dy, spin}.
+  /// Moves node i along one of {dx, dy, spin}.
   void move(int i, int component, double by) {
     if (component == 2)
       end_angle[i] += by;
@@ -77,8 +78,8 @@ struct RandomPlanarStep {
   std::array<Vector2, Nodes> begin, end, velocity;
 };
 
-/// Compares forces and tangent of three dimensions with those in the plane, and asks that nothing points out of it.
-/// `slope`: the largest that the tangent may be.
+/// Compares forces and tangent of both kernels, and expects no component out of the plane. `slope`: largest possible
+/// entry of the tangent.
 template <int Nodes>
 void expect_same_in_plane(const PlaneOfMotion& plane, const ElementSystem<Nodes>& space,
                           const std::array<Vector3, Nodes>& forces, const planar::BlockSystem<Nodes>& in_plane,
@@ -99,7 +100,8 @@ void expect_same_in_plane(const PlaneOfMotion& plane, const ElementSystem<Nodes>
   }
 }
 
-/// Compares the tangent with differences of forces: kernel(step, with_tangent, forces) gives the system and its forces.
+/// Compares the tangent with differences of forces. kernel(step, with_tangent, forces) returns the system and sets its
+/// forces.
 template <int Nodes, class Step, class Kernel>
 void expect_consistent_planar_tangent(const Step& step, const Kernel& kernel) {
   std::array<Vector3, Nodes> forces;

@@ -1,4 +1,4 @@
-// Residuals of every scheme against an independent numpy implementation (scripts/reference_steps.py).
+// Compares residuals of every scheme with an independent numpy implementation (scripts/reference_steps.py).
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-/// One random step as the reference wrote it.
+/// One random step with the reference's results, read from the table.
 class ReferenceStep {
  public:
   explicit ReferenceStep(int nodes) {
@@ -42,7 +42,7 @@ class ReferenceStep {
     const double* q = values_.at(key).data() + 4 * i;
     return Quaternion(q[0], q[1], q[2], q[3]).normalized();
   }
-  template <int Size>  // symmetric: row by row is column by column
+  template <int Size>  // symmetric, so row by row is column by column
   Eigen::Matrix<double, Size, Size> matrix(const std::string& key) const {
     return Eigen::Matrix<double, Size, Size>::Map(values_.at(key).data());
   }
@@ -116,7 +116,8 @@ class Comparison {
                              new_rates.data(), system);
     return system;
   }
-  /// Newmark's inertia and the forces at t_{n+1+alpha} (Hilber-Hughes-Taylor, forces conjugate to spins interpolated).
+  /// Inertia by Newmark's rule and the forces at t_{n+1+alpha}. (Hilber-Hughes-Taylor; forces conjugate to spins are
+  /// interpolated.)
   ElementSystem<Nodes> newmark(const std::string& scheme) {
     const double alpha = scheme == "hht2" ? data_.number("alpha") : 0;
     ElementNodes<Nodes> begin = nodes_;
@@ -158,7 +159,7 @@ class Comparison {
   ElementSystem<Nodes> conserving(bool has_multiplier) {
     std::array<PointKinematics, Nodes - 1> end;
     ElementSystem<Nodes> system;
-    // The reference tests and interpolates with the Lagrange functions themselves (beyond.md 1.1).
+    // The reference uses Lagrange functions as test functions and for interpolation (beyond.md 1.1).
     ElementFunctions<Nodes> lagrange;
     for (int k = 0; k < Nodes - 1; ++k)
       for (int i = 0; i < Nodes; ++i) {
@@ -169,7 +170,7 @@ class Comparison {
                            false, end.data(), nullptr, system);
     return system;
   }
-  /// Adds the rotary inertia of the element's nodes, as the model lumps it.
+  /// Adds the rotary inertia that the model lumps at the element's nodes.
   ElementSystem<Nodes> with_nodal_inertia(const char* scheme, ElementSystem<Nodes> system) {
     for (int i = 0; i < Nodes; ++i) {
       double length = 0;
@@ -189,7 +190,8 @@ class Comparison {
   void check(const std::string& key, const ElementSystem<Nodes>& system) {
     const Eigen::VectorXd expected = data_.all(key);
     ASSERT_EQ(expected.size(), 6 * Nodes);
-    // Round-off of two implementations; the multiplier's numerator cancels three digits of the stresses.
+    // Tolerance: round-off of two implementations. The multiplier's numerator loses three digits of the stresses by
+    // cancellation.
     EXPECT_LE(largest(system.residual - expected), 1e-12 * largest(expected)) << key << ", " << Nodes << " nodes";
   }
 

@@ -1,4 +1,4 @@
-// Rotary inertia of beams at the mass points.
+// Tests the rotary inertia of beams at the mass points.
 #include "elements/rotary_inertia.h"
 
 #include "elements/kernel_checks.h"
@@ -13,7 +13,8 @@ template <class Count>
 class RotaryInertia : public ::testing::Test {};
 TYPED_TEST_SUITE(RotaryInertia, NodeCounts);
 
-/// `rate(k, begin, end)`: of mass point k, from its rotation at the beginning and at the end.
+/// System of an element. `rate(k, begin, end)`: rate of mass point k, from its rotations at the beginning and at the
+/// end.
 template <int Nodes, class Rate>
 ElementSystem<Nodes> rotary_system(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, const Rate& rate,
                                    bool with_tangent, std::array<Matrix3, Nodes>* rotations = nullptr) {
@@ -97,14 +98,14 @@ TYPED_TEST(RotaryInertia, AngularMomentumBalance) {
     const Matrix3& J = step.element.mass_points[k].inertia;
     expected += step.element.mass_points[k].weight / kStep *
                 (end[k] * (J * after[k].angular_velocity) - begin * (J * step.mass_points[k].angular_velocity));
-    // (W_0 + W_1) / 2 is the material increment over the step.
+    // (W_0 + W_1) h / 2 is the material rotation increment over the step.
     const Vector3 mean = 0.5 * (after[k].angular_velocity + step.mass_points[k].angular_velocity);
     EXPECT_LE((kStep * mean - begin.transpose() * so3::log(Matrix3(end[k] * begin.transpose()))).norm(), 1e-13);
   }
   EXPECT_LE((moment - expected).norm(), 1e-12 * largest(system.residual));
 }
 
-/// A random section over a step.
+/// A section with random inertia and motion over a step.
 struct SectionStep {
   Matrix3 inertia, begin, end;
   MassPointState state;
@@ -133,7 +134,7 @@ TEST(RotaryRate, EnergyGradientOfAverageRule) {
   }
 }
 
-// The tangent-scaled increment works exactly the change of energy on the momentum rate.
+// The work of the momentum rate over the tangent-scaled increment is exactly the change of energy.
 TEST(RotaryRate, WorkOfTangentScaledIncrementIsTheChangeOfEnergy) {
   RandomSource random(6);
   const SectionStep s(random);
@@ -144,7 +145,7 @@ TEST(RotaryRate, WorkOfTangentScaledIncrementIsTheChangeOfEnergy) {
   EXPECT_NEAR(increment.dot(rate.moment), after - before, 1e-13 * (after + before));
 }
 
-// What the momentum-rate form means: l_1 = l_0 + h ((1 - gamma) dl_0 + gamma dl_1), with Newmark's velocities.
+// Meaning of the momentum-rate form: l_1 = l_0 + h ((1 - gamma) dl_0 + gamma dl_1), with Newmark's velocities.
 TEST(RotaryRate, MomentumRateFollowsNewmarksRule) {
   RandomSource random(7);
   const SectionStep s(random);
@@ -159,7 +160,7 @@ TEST(RotaryRate, MomentumRateFollowsNewmarksRule) {
             1e-13 * change.norm());
 }
 
-// A steady spin about a principal axis needs no moment and stays what it is.
+// A steady spin about a principal axis needs no moment, and stays constant.
 TEST(RotaryRate, SteadySpinAboutAPrincipalAxis) {
   const Matrix3 inertia = Vector3(1, 2, 3).asDiagonal();
   const double speed = 1.7;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""examples/close_the_loop.cpp: `close_the_loop_test.py PROGRAM`."""
+"""Test the program of examples/close_the_loop.cpp by running it: `close_the_loop_test.py PROGRAM`."""
 
 import math
 import os
@@ -15,14 +15,14 @@ MOVE = 3.0  # s
 
 
 def guide_arm():
-    """The arm of docs/guide.md."""
+    """Return the scene of the arm in docs/guide.md."""
     with open(os.path.join(ROOT, "docs", "guide.md"), encoding="utf-8") as file:
         return re.search(r'<robot name="arm">.*?</robot>', file.read(), re.DOTALL).group(0)
 
 
 class CloseTheLoop(unittest.TestCase):
     def run_program(self, scene, *arguments):
-        """With a file of that text."""
+        """Run the program with a file that contains the text `scene`."""
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "arm.urdf")
             with open(path, "w", encoding="utf-8") as file:
@@ -41,8 +41,9 @@ class CloseTheLoop(unittest.TestCase):
         last = result.stdout.splitlines()[-1]
         self.assertTrue(last.startswith("5.000 s, boom "), last)
         x, y, z = (float(number) for number in re.search(r"boom \((.*?)\)", last).group(1).split())
-        # The arm (payload and rod) lags behind by its inertia on the springs of controller and rod. A swing is at most
-        # as large as the jumps of the force that cause it, which are two, from and to the largest one.
+        # The arm (payload and rod) lags behind: its inertia acts on the springs of controller and rod. The amplitude of
+        # the vibration is at most the sum of the two jumps of the force that cause it, to the largest force and back
+        # from it.
         mass = math.pi * 0.008**2 * 2 * 2700
         inertia = 1 * 2**2 + mass * 2**2 / 3
         rod = 3 * 70e9 * math.pi / 4 * 0.008**4 / 2

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the guide shows of `flexarm check` is what that prints: `guide_test.py PROGRAM`."""
+"""Test that the output of `flexarm check` in the guide is what the program prints: `guide_test.py PROGRAM`."""
 
 import os
 import re
@@ -10,11 +10,11 @@ import unittest
 
 from typed_commands import text_of
 
-DIGITS = 1e-3  # relative: other compilers round otherwise
+DIGITS = 1e-3  # relative: other compilers round differently
 
 
 def parts_of(text):
-    """Words and numbers, line by line."""
+    """Return the words and numbers of a text, as one list for each line."""
     return [line.split() for line in text.strip().splitlines()]
 
 

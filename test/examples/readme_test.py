@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The scene of README.md, and what is typed there with it: `readme_test.py SETUP`."""
+"""Test the scene of README.md with the commands that README.md gives for it: `readme_test.py SETUP`."""
 
 import csv
 import os
@@ -26,8 +26,8 @@ class Readme(unittest.TestCase):
             with open(os.path.join(folder, "arm.csv"), encoding="utf-8") as file:
                 rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
         self.assertAlmostEqual(rows[-1]["time"], 4)
-        self.assertGreater(max(row["joint/shoulder/position"] for row in rows), 0.5)  # its motor moves it
-        self.assertGreater(max(row["energy/strain"] for row in rows), 0.01)  # and it bends
+        self.assertGreater(max(row["joint/shoulder/position"] for row in rows), 0.5)  # the motor moves the arm
+        self.assertGreater(max(row["energy/strain"] for row in rows), 0.01)  # the arm bends
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about the library, typed: `tutorial_library_test.py SETUP BUILD`."""
+"""Test the commands of the tutorial about the library, typed as they stand there: `tutorial_library_test.py SETUP
+BUILD`."""
 
 import os
 import re
@@ -20,7 +21,7 @@ class TutorialLibrary(unittest.TestCase):
         self.assertEqual(status, 0)
         swings = re.findall(r"^(\S+ kg: swings by \S+ mm)$", printed, re.MULTILINE)
         self.assertEqual(len(swings), 9)
-        self.assertEqual(swings, 3 * swings[:3])  # wherever the library was
+        self.assertEqual(swings, 3 * swings[:3])  # the same for each of the three places of the library
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about bags and modes, typed as they stand: `tutorial_modes_test.py SETUP`."""
+"""Test the commands of the tutorial about bags and modes, typed as they stand there: `tutorial_modes_test.py SETUP`."""
 
 import math
 import os
@@ -32,7 +32,8 @@ class TutorialModes(unittest.TestCase):
         modes = [float(frequency) for frequency in re.findall(r"mode \d: (\S+) Hz", printed)]
         found = [float(frequency) for frequency in re.findall(r"identified: (\S+) Hz", printed)]
         self.assertGreaterEqual(len(found), 3)
-        # The scheme's period is longer by (omega h)^2 / 12; beside that, 1e-3 for the gauge's noise.
+        # The scheme lengthens a period by the relative amount (omega h)^2 / 12. Another 1e-3 allows for the noise of
+        # the gauge.
         for frequency, mode in zip(found, modes[0::2]):
             expected = mode * (1 - (2 * math.pi * mode * 1e-3) ** 2 / 12)
             self.assertAlmostEqual(frequency, expected, delta=1e-3 * expected)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about MoveIt, typed as they stand: `tutorial_moveit_test.py SETUP`."""
+"""Test the commands of the tutorial about MoveIt, typed as they stand there: `tutorial_moveit_test.py SETUP`."""
 
 import os
 import re

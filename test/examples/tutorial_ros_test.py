@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about ROS, typed as they stand: `tutorial_ros_test.py SETUP`."""
+"""Test the commands of the tutorial about ROS, typed as they stand there: `tutorial_ros_test.py SETUP`."""
 
 import os
 import sys
@@ -17,7 +17,8 @@ class TutorialRos(unittest.TestCase):
             os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"))
             status, printed = type_commands(commands, SETUP, folder)
         self.assertEqual(status, 0)
-        self.assertEqual(printed.count("RESULT: SUCCESS"), 2)  # held by C++, and by Python
+        # Held by the C++ controller, and by the Python controller
+        self.assertEqual(printed.count("RESULT: SUCCESS"), 2)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorials, typed as they stand, in one folder: `tutorials_test.py SETUP`."""
+"""Test the commands of the tutorials, typed as they stand there, in one folder: `tutorials_test.py SETUP`."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ import unittest
 
 from typed_commands import commands_of, type_commands
 
-TUTORIALS = "tutorial_flexible_link.md", "tutorial_servo.md"  # the second goes on where the first ends
+TUTORIALS = "tutorial_flexible_link.md", "tutorial_servo.md"  # the second continues the first
 
 
 class Tutorials(unittest.TestCase):
@@ -19,7 +19,7 @@ class Tutorials(unittest.TestCase):
             status, printed = type_commands(commands, SETUP, folder)
             self.assertEqual(status, 0)
             self.assertGreater(os.path.getsize(os.path.join(folder, "shaped_slew.png")), 0)
-        # What the text says that comes out.
+        # Results that the text of the tutorials promises.
         for expected in ("mode 2: 4.56", "motor -6.105 N m", "shoulder at the end: 0.999", "swing: 4.567",
                          "unshaped: the hand swings by 31.", "shaped: the hand swings by 0.8"):
             self.assertIn(expected, printed)

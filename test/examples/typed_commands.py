@@ -1,4 +1,4 @@
-"""Commands of documents, typed as they stand."""
+"""Run the commands of documents, typed as they stand there."""
 
 import os
 import re
@@ -14,16 +14,17 @@ def text_of(name):
 
 
 def commands_of(name):
-    """Those of a document in docs/, block by block."""
+    """Return the commands of a document in docs/, one text for each block."""
     return re.findall(r"^```sh\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
 
 
-# What `source setup.bash` sets, and a workspace around the tests has set already.
+# Variables that `source setup.bash` sets. A workspace around the tests may have set them already.
 OF_WORKSPACES = "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH"
 
 
 def type_commands(commands, setup, folder):
-    """Runs them in a folder, in a shell that has sourced `setup` and nothing else; status, and what is printed."""
+    """Run commands in a folder, in a shell that has sourced `setup` and nothing else. Return the exit status and the
+    output."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_WORKSPACES}
     environment["PATH"] = os.path.dirname(sys.executable) + ":/usr/bin:/bin:/usr/sbin:/sbin"
     result = subprocess.run(

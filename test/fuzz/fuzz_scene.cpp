@@ -1,4 +1,4 @@
-/// libFuzzer's way in: any bytes as a scene.
+/// Entry point of libFuzzer: tries any bytes as the text of a scene.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kLongestValue = 256;
 constexpr flexarm::fuzz::Limits kLimits{300, 3};
 
-/// The value of an attribute that follows a place in the text, changed; the text stays well-formed if it was.
+/// Changes the value of the next attribute after `place` in the text. A well-formed text stays well-formed.
 void change_value(std::string& text, std::size_t place) {
   const std::size_t attribute = text.find("=\"", place);
   if (attribute == std::string::npos) return;

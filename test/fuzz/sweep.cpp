@@ -1,8 +1,8 @@
-/// Gives every number in scenes every hostile value, one at a time, each with 30 s and 2 GiB, in processes that try
-/// some and that a case may end: sweep [--every N] [--from FIRST] SCENE... Prints what must not be; the exit status is
-/// 1 if there is any.
+/// Replaces each number in scenes by each hostile value, one at a time: sweep [--every N] [--from FIRST] SCENE... Each
+/// case has 30 s and 2 GiB. Child processes try some cases each, so that a case may end its process. Prints wrong
+/// behaviour; the exit status is 1 if there is any.
 ///
-/// `--every N`: every N-th case only, from the first or FIRST on.
+/// `--every N`: tries only every N-th case, from the first one, or from FIRST.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,21 +25,23 @@
 namespace flexarm::fuzz {
 namespace {
 
-// Three steps, each of which may be halved 500 times: the slowest scene that ends takes 75000 iterations, or 8 s.
+// A case makes three steps, each of which may be halved 500 times. The slowest scene that ends takes 75000 iterations,
+// or 8 s.
 constexpr rlim_t kSeconds = 30, kBytes = rlim_t{2} << 30;
-/// Cases that a process tries: making one takes as long as trying a scene.
+/// Number of cases that one process tries: starting a process takes as long as trying a scene.
 constexpr std::size_t kTogether = 32;
 constexpr const char* kValues[] = {"0",     "-0",  "1e-320", "1e-30", "1e30", "1e300",      "-1e300",
                                    "nan",   "inf", "-1",     "1e6",   "7",    "2147483648", "99999999999999999999",
                                    "1e-300"};
 
-/// Where a number stands in a text.
+/// The position of a number in a text.
 struct Place {
   std::size_t begin, size;
   std::string attribute;
 };
 
-/// The numbers of an attribute, whose value is `size` characters from `begin`; none if it is something else, too.
+/// Returns the numbers of an attribute whose value has `size` characters from `begin` on. Returns none if the value
+/// contains anything but numbers.
 std::vector<Place> numbers_of(const std::string& text, std::size_t begin, std::size_t size, const std::string& name) {
   std::vector<Place> places;
   std::string_view rest(text.data() + begin, size);
@@ -50,7 +52,7 @@ std::vector<Place> numbers_of(const std::string& text, std::size_t begin, std::s
   return places;
 }
 
-/// Every number in an attribute of a scene that is well-formed XML.
+/// Returns every number in the attributes of a scene, which is well-formed XML.
 std::vector<Place> numbers_in(const std::string& text) {
   std::vector<Place> places;
   for (std::size_t i = text.find("=\""); i != std::string::npos; i = text.find("=\"", i)) {
@@ -63,12 +65,12 @@ std::vector<Place> numbers_in(const std::string& text) {
   return places;
 }
 
-/// A scene with one number changed.
+/// A scene with one changed number.
 struct Case {
   long number;
-  std::string text, name, words;  ///< words: which number it is, and what takes its place
+  std::string text, name, words;  ///< words: which number is changed, and the new value
 };
-/// How the trial of a case ended, and what is wrong with it, in words; empty if nothing is.
+/// How the trial of a case ended, and a description of what is wrong, which is empty if nothing is.
 struct Outcome {
   std::string end, wrong;
 };
@@ -80,7 +82,8 @@ void set_soft_limit(int what, rlim_t value) {
   setrlimit(what, &limit);
 }
 
-/// So much time and memory from now on. The hard limits stay: only root can raise them again for the next case.
+/// Allows the process this much more time and memory. Hard limits are unchanged: only root can raise them again for the
+/// next case.
 void set_limits() {
   timespec used;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
@@ -88,7 +91,7 @@ void set_limits() {
   set_soft_limit(RLIMIT_AS, kBytes);
 }
 
-/// Tries cases from `first` on in this process, and writes two lines on each: how it ended, and what is wrong.
+/// Tries the cases from `first` on in this process. Writes two lines for each case: how it ended, and what is wrong.
 [[noreturn]] void try_and_tell(const std::vector<Case>& cases, std::size_t first, int file) {
   for (std::size_t i = first; i < cases.size(); ++i) {
     set_limits();
@@ -102,7 +105,7 @@ void set_limits() {
   _exit(0);
 }
 
-/// All of `file` until it is closed.
+/// Reads from `file` until it is closed.
 std::string read_all(int file) {
   std::string text;
   char part[4096];
@@ -110,8 +113,8 @@ std::string read_all(int file) {
   return text;
 }
 
-/// Outcomes of the cases from `first` on that a process of its own comes to: of all, unless one ends the process, which
-/// is the last then.
+/// Tries the cases from `first` on in a child process and returns their outcomes. If a case ends the process, its
+/// outcome is the last one.
 std::vector<Outcome> tried_apart(const std::vector<Case>& cases, std::size_t first) {
   int ends[2];
   if (pipe(ends) != 0) return {{"killed", "no pipe"}};

@@ -1,3 +1,4 @@
+/// Tries one text as a scene; see try_scene.h.
 #include "fuzz/try_scene.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kSteps = 3;
 
-/// The first error of `name` that tells no line, though it is not about the file as a whole.
+/// Returns the first error of `name` without a line number, except errors about the file or scene as a whole.
 std::string without_line(const scene::Diagnostics& findings) {
   for (const scene::Diagnostic& finding : findings) {
     const bool is_of_whole = finding.element == "file" || finding.element == "scene";
@@ -22,7 +23,7 @@ std::string without_line(const scene::Diagnostics& findings) {
   return "";
 }
 
-/// Whether a message has "NAME:LINE: " in it.
+/// Returns whether a message contains "NAME:LINE: ".
 bool tells_line(const std::string& message, const std::string& name) {
   const std::size_t place = message.find(name + ":");
   const std::size_t line = place + name.size() + 1;
@@ -38,7 +39,8 @@ bool is_finite(const Simulation& simulation) {
   return std::isfinite(sum);
 }
 
-/// Those that are asked for, and those that an automatic mesh needs where it is twisted.
+/// Returns about how many elements a scene has: the given numbers, plus those that an automatic mesh needs for twisted
+/// pieces.
 double elements_of(const scene::SceneDescription& scene) {
   double count = 0;
   for (const scene::LinkDescription& link : scene.links) {

@@ -1,5 +1,6 @@
 #pragma once
-/// What every text must lead to: an error that says where it is, a run, or a failure that says why.
+/// Tries a text as a scene. Every text must lead to an error that says its place, to a run, or to a failure with a
+/// reason.
 
 #include <limits>
 #include <string>
@@ -10,16 +11,17 @@ struct Trial {
   enum class End { Refused, Ran, Failed };
   End end = End::Ran;
   std::string said;   ///< the first finding, or the reason of the failure
-  std::string wrong;  ///< what must not be; empty: nothing
+  std::string wrong;  ///< what is wrong; empty if nothing is
 };
 
-/// With sanitizers large scenes, which are good, take minutes, and so do steps that are halved often.
+/// Limits for builds with sanitizers, in which large valid scenes and steps with many halvings take minutes.
 struct Limits {
-  double elements = std::numeric_limits<double>::infinity();  ///< of all beams, about; a scene with more is only read
-  int halvings = std::numeric_limits<int>::max();             ///< at most, whatever the scene says
+  /// Approximate limit for all beams; a scene with more is read but not run
+  double elements = std::numeric_limits<double>::infinity();
+  int halvings = std::numeric_limits<int>::max();  ///< upper limit, whatever the scene says
 };
 
-/// Reads a scene called `name`, builds its model and takes three steps.
+/// Reads a scene called `name`, builds its model and makes three steps.
 Trial try_scene(const std::string& text, const std::string& name, const Limits& limits = {});
 
 }  // namespace flexarm::fuzz

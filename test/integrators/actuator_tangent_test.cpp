@@ -1,4 +1,5 @@
-// The tangent of a step with springs, motors behind rigid and elastic gears, servos, and gyroscopes.
+// Compares the tangent of a step with differences of the residual, for springs, motors behind rigid and elastic gears,
+// servos, and gyroscopic rotors.
 #include "integrators/scheme_step.h"
 
 namespace flexarm {
@@ -6,7 +7,8 @@ namespace {
 
 using namespace test;
 
-/// Rigid and elastic gears with backlash and losses, on a hinge and a slider of rigid and flexible links.
+/// A scene with motors on a hinge and a slider, on rigid and flexible links. The gears are rigid or elastic, with
+/// backlash and losses.
 scene::SceneDescription driven_scene(bool is_elastic) {
   scene::SceneDescription scene = every_joint_scene(false);
   for (auto* joints : {&scene.joints, &scene.loop_joints})
@@ -40,7 +42,7 @@ scene::SceneDescription driven_scene(bool is_elastic) {
 
 class ActuatorTangent : public SchemeStep {
  protected:
-  /// Over updates short enough that no gear passes a border of its play.
+  /// Compares tangent and differences, with updates so short that no gear enters or leaves its backlash.
   void expect_consistent(const Model& model) const {
     RandomSource random(21);
     StepSystem system(model, scheme(), BackendChoice::Matrix);
@@ -66,7 +68,8 @@ TEST_P(ActuatorTangent, Gyroscopes) {
     scene::SceneDescription scene = driven_scene(is_elastic);
     for (scene::DriveDescription& drive : scene.drives) drive.axis = Vector3(0.6, 0, 0.8);
     for (scene::JointDescription& joint : scene.joints)
-      if (joint.name == "base") joint.kind = scene::JointKind::Spherical;  // the shoulder's motor is carried round
+      // So that the base carries the shoulder's motor around
+      if (joint.name == "base") joint.kind = scene::JointKind::Spherical;
     expect_consistent(build_model(scene));
   }
 }

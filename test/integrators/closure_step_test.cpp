@@ -1,4 +1,4 @@
-// Whole steps with loops that multipliers close.
+// Tests whole steps of mechanisms whose loops are closed by multipliers.
 #include "integrators/consistent_tangent.h"
 #include "integrators/mechanism.h"
 #include "support/closed_ring.h"
@@ -44,7 +44,8 @@ INSTANTIATE_TEST_SUITE_P(
                                          JointKind::Planar),
                        ::testing::Values("em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3")));
 
-// A multiplier counts by the way that its force moves the mechanism in a step: h^2 / mass of it, over the length.
+// The norm of an update is a length. A multiplier enters it by the distance that its force moves the mechanism in a
+// step, h^2 / mass times the multiplier, relative to the scene's length.
 TEST(ClosedStep, MultipliersCountInNormsByTheirWay) {
   const Model model = ring_with_beam(JointKind::Fixed);
   StepSystem system(model, *find_scheme("em"), BackendChoice::Matrix);

@@ -1,5 +1,5 @@
 #pragma once
-/// The tangent of a whole step against differences of its residual.
+/// Compares the tangent of a whole step with differences of its residual.
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,10 @@ inline Eigen::MatrixXd dense(const SparseTangent& assembler) {
   return matrix;
 }
 
-/// Every column of the tangent against differences; `size`: over what update the residual changes its shape.
+/// Compares every column of the tangent with differences. `size`: size of an update over which the residual stays
+/// smooth; it scales the steps of the differences and the tolerance.
 inline void expect_consistent_tangent(StepSystem& system, double size) {
-  ASSERT_TRUE(system.evaluate(true));  // this one sees the strains at the beginning of the step
+  ASSERT_TRUE(system.evaluate(true));  // the first tangent of a step uses the strains at the beginning of the step
   ASSERT_TRUE(system.evaluate(true));
   const Eigen::MatrixXd tangent = dense(matrix_of(system));
   const double scale = std::max(largest(tangent), largest(system.residual()));
@@ -37,7 +38,7 @@ inline void expect_consistent_tangent(StepSystem& system, double size) {
           system.evaluate(false);
           const Eigen::VectorXd residual = system.residual();
           system.update(-h * unit);
-          system.evaluate(false);  // all the way back: the iterative interpolation follows the path
+          system.evaluate(false);  // undo the whole update, because the iterative interpolation depends on the path
           return residual;
         },
         difference_step * size);

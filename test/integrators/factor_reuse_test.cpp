@@ -1,4 +1,4 @@
-// When Newton's method makes new factors.
+// Tests when FactorReuse lets Newton's method factorise the tangent anew, on a model of how errors decrease.
 #include "integrators/factor_reuse.h"
 
 #include <cmath>
@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kGuess = 1e-5, kTarget = 1e-15;
 
-/// How a system answers: by what factors of an earlier solve contract, and those of this one's first iteration.
+/// How the error of a model system decreases: contraction by factors of an earlier solve, and by the factors of this
+/// solve's first iteration.
 struct Contractions {
   double old, own;
 };
@@ -20,7 +21,8 @@ struct Solve {
   double cost(double cost_of_factors) const { return iterations + (cost_of_factors - 1) * factorisations; }
 };
 
-/// A solve from a guess with the error kGuess: new factors square it, and contract by its root from then on.
+/// Simulates a solve whose guess has the error kGuess. An update with new factors squares the error; from then on, the
+/// kept factors contract by the square root of that error.
 Solve solve(FactorReuse& reuse, const Contractions& contractions) {
   Solve solve;
   double error = kGuess, rate = contractions.old;
@@ -58,7 +60,8 @@ TEST(FactorReuse, FirstSolveMakesFactors) {
   EXPECT_TRUE(reuse.begin(true));
 }
 
-// Old factors that contract well are kept; those that do not, and own ones that do not, are not.
+// Old factors that contract well are kept. Old factors that contract badly are replaced, and so are the solve's own
+// factors if they contract badly.
 TEST(FactorReuse, FindsTheCheapestPlan) {
   struct Case {
     const char* what;
@@ -70,7 +73,8 @@ TEST(FactorReuse, FindsTheCheapestPlan) {
     SCOPED_TRACE(c.what);
     FactorReuse reuse(3);
     mean_cost(reuse, 3, c.contractions, 20);
-    // One trial in 64 of the cheapest plan's cost, and as much again for where the count begins and ends.
+    // Allowance: trials of other plans cost 1/64 of the cheapest plan. Another 1/64 covers where the counting begins
+    // and ends.
     EXPECT_LE(mean_cost(reuse, 3, c.contractions, 1000), c.cost * (1 + 2.0 / 64));
   }
 }
@@ -79,15 +83,16 @@ TEST(FactorReuse, FollowsWhenAnotherPlanBecomesTheCheapest) {
   const Contractions slow{0.5, 1e-4}, fast{1e-4, 1e-4};
   FactorReuse reuse(3);
   mean_cost(reuse, 3, slow, 200);
-  // Trials without new factors have cost at most four times as much: 64 x 3 solves go by before the next.
+  // Trials without new factors cost at most four times the cheapest plan, an excess of three. So the next trial comes
+  // after at most 64 x 3 solves.
   mean_cost(reuse, 3, fast, 2 * 64 * 3);
   EXPECT_LE(mean_cost(reuse, 3, fast, 100), 3 * (1 + 2.0 / 64));
-  // Nobody waits where the plan that is used becomes dear.
+  // The change is found without a wait if the plan in use becomes expensive.
   mean_cost(reuse, 3, slow, 10);
   EXPECT_LE(mean_cost(reuse, 3, slow, 300), 5 * (1 + 2.0 / 64));
 }
 
-// New factors pay at a contraction at which dear ones do not.
+// At the same contraction, new factors pay if they are cheap, and do not pay if they are expensive.
 TEST(FactorReuse, CheapFactorsAreMadeMoreOften) {
   const UpdateOutlook kept{1e-7, 1e-2, false, kTarget};
   EXPECT_TRUE(FactorReuse(1.5).renew(3, kept));
@@ -102,13 +107,13 @@ TEST(FactorReuse, NewFactorsAreNotMadeForTheLastDigits) {
   EXPECT_TRUE(FactorReuse(3).renew(3, {1e-12, 2.0, false, kTarget})) << "kept ones make it worse";
 }
 
-// New factors are worth keeping where they were made near the solution.
+// New factors are worth keeping only if they were computed near the solution.
 TEST(FactorReuse, GoesOnWithNewFactorsFarFromTheSolution) {
   EXPECT_TRUE(FactorReuse(3).renew(3, {0.1, 0, true, kTarget}));
   EXPECT_FALSE(FactorReuse(3).renew(3, {1e-5, 0, true, kTarget}));
 }
 
-// A plan that has made a solve fail has cost the next one, too, and is not taken again soon.
+// If a plan makes a solve fail, the cost of the repeated solve counts for the plan, too. It is not tried again soon.
 TEST(FactorReuse, HeedsFailures) {
   FactorReuse reuse(2);
   reuse.begin(false);
@@ -123,7 +128,8 @@ TEST(FactorReuse, HeedsFailures) {
   }
 }
 
-// By itself it would be the cheapest: what follows the failure is what makes it dear, and its trials rare.
+// Without its failures, this plan would be the cheapest. The cost of the repeated solve makes it expensive, and its
+// trials rare.
 TEST(FactorReuse, FailuresCostWhatFollowsThem) {
   FactorReuse reuse(2);
   int failures = 0;
@@ -133,14 +139,15 @@ TEST(FactorReuse, FailuresCostWhatFollowsThem) {
     } else {
       ++failures;
       reuse.end(2, 0, false);
-      reuse.end(20, 10, true);  // without a plan
+      reuse.end(20, 10, true);  // the repeated solve after the failure, without a plan
     }
   }
-  // 2 + 30 iterations for 6: a trial in 64 x 26 / 6 = 277 solves, and one to learn it.
+  // A failure costs 2 + 30 iterations instead of 6. So there is one trial in 64 x 26 / 6 = 277 solves, and one more to
+  // learn the cost.
   EXPECT_LE(failures, 1 + 1000 / 277);
 }
 
-// Where kept factors do nothing but harm, full Newton is found within as many solves as there are plans.
+// If kept factors only do harm, full Newton is found after at most as many failures as there are plans.
 TEST(FactorReuse, FindsFullNewtonWhereAllElseFails) {
   FactorReuse reuse(2);
   int failures = 0;
@@ -152,10 +159,10 @@ TEST(FactorReuse, FindsFullNewtonWhereAllElseFails) {
     } else {
       ++failures;
       reuse.end(made + 3, made, false);
-      reuse.end(4, 4, true);  // without a plan
+      reuse.end(4, 4, true);  // the repeated solve after the failure, without a plan
     }
   }
-  // And as many trials, if they are made at once.
+  // The limit is twice the number of plans: as many failed trials are allowed, which may come right away.
   EXPECT_LE(failures, 6);
 }
 

@@ -1,4 +1,5 @@
-// What is said to be far from acting would not act if it were asked.
+// Tests FarElements, which skips force elements whose nodes are too far apart to act: a skipped element must not be one
+// that would act.
 #include "integrators/far_elements.h"
 
 #include <memory>
@@ -19,7 +20,7 @@ class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
   double number() { return number_(engine_); }
-  /// In braces the numbers are drawn in their order, with every compiler.
+  /// Braces guarantee that the numbers are drawn in the same order with every compiler.
   Vector3 vector(double size) { return size * Vector3{number(), number(), number()}; }
 
  private:
@@ -27,7 +28,7 @@ class Random {
   std::uniform_real_distribution<double> number_{-1, 1};
 };
 
-constexpr int kNodes = 5;  // a body with points, a body with a shape, an element of a beam
+constexpr int kNodes = 5;  // nodes of a body with points, a body with a shape, and an element of a beam
 constexpr double kStep = 0.01;
 
 std::vector<std::unique_ptr<ForceElement>> elements() {
@@ -67,14 +68,17 @@ TEST(FarElements, AreNotFoundToActAndNeedNoHalves) {
   const auto all = elements();
   int far = 0, asked = 0, found = 0;
   for (unsigned seed = 0; seed < 1800; ++seed) {
-    // Every third one moves without turning, or turns in its place: neither may be left out beside the other.
+    // One third of the runs only translates, one third only rotates: each kind of motion must count by itself.
     const double ways = seed % 3 == 2 ? 0 : 1.5, turns = seed % 3 == 1 ? 0 : 2;
     Random random(seed);
     FarElements tracked(all.size(), kNodes);
     std::vector<NodePose> poses = apart(random);
     for (int i = 0; i < 50; ++i) {
       std::vector<Vector6> velocities(kNodes);
-      for (Vector6& velocity : velocities) velocity << random.vector(ways), random.vector(turns);
+      for (Vector6& velocity : velocities) {
+        velocity.head<3>() = random.vector(ways);
+        velocity.tail<3>() = random.vector(turns);
+      }
       const ForceStart start{poses, velocities, kStep};
       std::vector<NodePose> end = poses;
       for (int k = 0; k < kNodes; ++k)
@@ -108,7 +112,7 @@ Vector6 velocity_of(const Vector3& linear, const Vector3& angular) {
   return velocity;
 }
 
-// Poses that are set anywhere wake what they bring near, and so do velocities.
+// An element is evaluated again if its nodes were moved near, or are fast enough to come near.
 TEST(FarElements, WakeWhereTheyAreSetNearer) {
   FarElements tracked(1, 1);
   const std::vector<Vector6> still(1, Vector6::Zero());

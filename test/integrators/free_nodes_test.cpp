@@ -1,4 +1,4 @@
-// Nodes moved four at a time against one at a time.
+// Compares the update of nodes in packs of four with the update of single nodes.
 #include "integrators/free_nodes.h"
 
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// Of unit quaternions and matrices made of them: some ten operations on numbers up to one.
+/// Error of unit quaternions and of matrices made of them: some ten operations on numbers up to 1.
 constexpr double kRoundOff = 10 * std::numeric_limits<double>::epsilon();
 
 NodePose moved(const NodePose& from, const Vector3& displacement, const Quaternion& turn) {
@@ -35,7 +35,7 @@ class FreeNodesOf : public ::testing::Test {
   RandomSource random_;
   std::vector<NodePose> begin_ = model_.nodes;
 
-  /// Turns of up to pi, which leave the range of the series that packs sum.
+  /// Random increments with rotations of up to pi, outside of the range of the series that packs use.
   Eigen::VectorXd increment() {
     Eigen::VectorXd out(dof_.unknowns);
     for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = 1.8 * random_.number();
@@ -77,7 +77,7 @@ TEST_F(FreeNodesOf, AMechanismAreAdvancedByIncrementsThatAreFoundAgain) {
   }
 }
 
-// Also where products are fused with sums, so that a b - b a is not zero.
+// The increment must be exactly zero. This also holds where fused multiply-add would make b a - a b differ from zero.
 TEST_F(FreeNodesOf, AMechanismThatStandsHaveNoIncrements) {
   for (NodePose& pose : begin_) pose.orientation = random_.rotation(3);
   std::vector<Vector3> increments(begin_.size(), Vector3::Ones());

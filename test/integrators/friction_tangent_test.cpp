@@ -1,4 +1,5 @@
-// The tangent of a step with friction that grows with the force on the joint: slipping, held, and in the smooth law.
+// Compares the tangent of a step with differences of the residual, for friction that grows with the force on the joint:
+// slipping, sticking, and in the smooth law.
 #include "integrators/scheme_step.h"
 
 namespace flexarm {
@@ -6,8 +7,8 @@ namespace {
 
 using namespace test;
 
-/// Over longer updates the magnitude of a force that nearly vanishes bends, and a slider comes to the border of its
-/// element, where the line's tangent has a kink.
+/// Size of the updates. Longer updates reach two kinds of kinks: the magnitude of a force that nearly vanishes, and a
+/// slider at the border of its element.
 constexpr double kShort = 0.03;
 
 class FrictionTangent : public SchemeStep {

@@ -1,5 +1,5 @@
 #pragma once
-/// One mechanism with everything in it, and random states of any model.
+/// A mechanism that contains joints, beams, loads and drives of every kind, and random states of any model.
 
 #include "building/model_builder.h"
 #include "elements/random_element.h"
@@ -9,7 +9,7 @@
 
 namespace flexarm::test {
 
-/// Full stiffness and inertia matrices with the centre of mass off the reference line.
+/// Full stiffness and inertia matrices, with the centre of mass off the reference line.
 inline scene::MatrixSection random_section(RandomSource& random) {
   scene::MatrixSection section;
   section.stiffness = 10 * random.positive_definite<6>();
@@ -22,9 +22,9 @@ inline scene::MatrixSection random_section(RandomSource& random) {
   return section;
 }
 
-/// Chains, trees, every kind of joint on rigid and flexible masters with offsets, mimicking and prescribed coordinates,
-/// stops, friction, loads of every kind, gravity, damping, elements of every order. `floating`: nothing is fixed to the
-/// world, loaded, driven or damped.
+/// A scene with chains and trees of links, every kind of joint on rigid and flexible masters with offsets, mimicking
+/// and prescribed coordinates, stops, friction, loads of every kind, gravity, damping, and elements of every order. If
+/// `floating`, nothing is fixed to the world, loaded, driven or damped.
 inline scene::SceneDescription every_joint_scene(bool floating) {
   using scene::JointKind;
   RandomSource random(11);
@@ -97,7 +97,8 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   cam.slide = scene::SlideDescription{0.3, JointKind::Cam};
   cam.slide->offset = {0.05, -0.1, 0.15};
   cam.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.2, -0.1));
-  // The follower's tip hangs on the hand; the mast's turns and travels on the plate, by a joint from its side.
+  // Two loops: the follower's tip is connected to the hand; the mast turns and slides on the plate. The second loop
+  // joint has the roles of parent and child swapped.
   close_loop(builder, "clasp", JointKind::Universal, "hand", "follower", Vector3(0.5, 0, 0.2), Vector3(0.6, 0, 0.8))
       .axis2 = Vector3(0, 0.8, 0.6);
   scene::JointDescription& ring =
@@ -122,7 +123,7 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   return builder.scene;
 }
 
-/// A random state near the model's initial one that its joints allow, with random velocities of everything.
+/// A random state near the model's initial one. It satisfies the joints, and has random velocities of everything.
 inline State random_state(const Model& model, RandomSource& random, double size) {
   State state = initial_state(model);
   std::vector<bool> slave(model.nodes.size(), false);

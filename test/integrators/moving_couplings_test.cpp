@@ -1,4 +1,4 @@
-// Force elements whose nodes change from step to step.
+// Tests force elements that act on other nodes in each step, so that the couplings in the tangent change.
 #include <algorithm>
 
 #include "elements/line_element.h"
@@ -9,7 +9,8 @@
 namespace flexarm::test {
 namespace {
 
-/// A spring of no rest length from the centre of one node to whichever of the others is nearest when a step begins.
+/// A spring of zero rest length. It acts between one node and the nearest of the other nodes at the beginning of the
+/// step.
 class NearestSpring : public ForceElement {
  public:
   NearestSpring(int node, const std::vector<int>& others)
@@ -40,11 +41,11 @@ class NearestSpring : public ForceElement {
       for (int j = 0; j < 2; ++j)
         action.tangent.block<3, 3>(6 * i, 6 * j).diagonal().setConstant((i == j ? 1 : -1) * weight * kStiffness);
   }
-  double energy(const State&, const double*) const override { return 0; }  // is not asked for here
-  ForceMeasures measures(const State&, const int*) const override { return {}; }
-  DamperTensions dampers(const State&, const Eigen::VectorXd&) const override { return {}; }
+  double energy(const State&, const double*) const override { return 0; }  // not needed in these tests
+  ForceMeasures measures(const State&, const double*, const int*) const override { return {}; }
+  DamperTensions dampers(const State&, const double*, const Eigen::VectorXd&) const override { return {}; }
 
-  /// Since it was told to forget, how many others it has been on.
+  /// Number of other nodes on which the spring has acted since the last forget().
   long visits() const { return std::count(visited_.begin(), visited_.end(), true); }
   void forget() { std::fill(visited_.begin(), visited_.end(), false); }
 
@@ -82,7 +83,7 @@ Model arm_and_body(std::shared_ptr<NearestSpring>& spring) {
 class MovingCouplings : public SchemeStep {};
 class MovingCouplingsTangent : public SchemeStep {};
 
-/// Schemes that have force elements: those that interpolate forces in time have none.
+/// The schemes that support force elements, i.e. those that do not interpolate forces in time.
 std::vector<SchemeVariant> with_force_elements(std::vector<SchemeVariant> variants) {
   variants.erase(std::remove_if(variants.begin(), variants.end(),
                                 [](const SchemeVariant& variant) { return variant.scheme.hht != HhtForm::None; }),
@@ -90,7 +91,8 @@ std::vector<SchemeVariant> with_force_elements(std::vector<SchemeVariant> varian
   return variants;
 }
 
-// Along the tree as by the matrix: every step's residual and solution, wherever the spring is.
+// In every step, wherever the spring acts, elimination along the tree gives the same residual and solution as the
+// matrix.
 TEST_P(MovingCouplings, AreSolvedLikeByTheMatrix) {
   std::shared_ptr<NearestSpring> spring;
   const Model model = arm_and_body(spring);
@@ -132,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, MovingCouplingsTangent,
                          ::testing::ValuesIn(with_force_elements(with_consistent_tangent())),
                          [](const auto& info) { return info.param.name; });
 
-// A whole run along the tree: the spring goes from node to node, and nothing is allocated.
+// A whole run with elimination along the tree: the spring moves from node to node, and nothing is allocated.
 TEST(MovingCouplingsInARun, AllocateNothing) {
   std::shared_ptr<NearestSpring> spring;
   const Model model = arm_and_body(spring);

@@ -1,4 +1,4 @@
-// How Newton's method judges that it has arrived.
+// Tests when Newton's method ends, and which error it leaves.
 #include "integrators/newton.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kStep = 1e-3;
 constexpr int kSteps = 100, kJump = 50;
 
-/// A scene that moves freely; at step kJump a torque starts.
+/// A scene that moves freely, until a torque starts at step kJump.
 struct Swing {
   Model model;
   Stepper stepper;
@@ -36,8 +36,8 @@ struct Swing {
   }
 };
 
-/// Each step beside one of full Newton from the same state: positions differ by at most `bound`, relative to the scene.
-/// Iterations of all steps.
+/// Compares each step with a step of full Newton from the same state: positions may differ by at most `bound`, relative
+/// to the size of the scene. Returns the number of iterations of all steps.
 int iterations_within(double bound, const std::string& scene, double tolerance, int steps = kSteps) {
   Swing quick(scene, {kStep, tolerance}), full(scene, {kStep, 1e-10, 20, 5, false});
   for (int step = 0; step < steps && !::testing::Test::HasFatalFailure(); ++step) {
@@ -53,16 +53,18 @@ int iterations_within(double bound, const std::string& scene, double tolerance, 
   return quick.iterations;
 }
 
-// What a solve leaves is at most the square of the tolerance, also where an earlier one has been taken at its word.
+// The error left by a solve is at most the square of the tolerance. This also holds if the solve ends after one update
+// because an earlier solve has shown that one is enough.
 TEST(NewtonIteration, OneUpdateIsEnoughWhereItHasBeenShownToBe) {
   const std::string arm = "config/examples/flexible_two_link_arm.urdf";
   iterations_within(1e-8, arm, 1e-4);
-  // Two in each step where every solve has to show by itself what it leaves.
+  // It would be two iterations in each step if every solve had to show by itself which error it leaves.
   EXPECT_LT(iterations_within(1e-6, arm, 1e-3), 1.5 * kSteps);
 }
 
-// With the default tolerance it is the round-off of a double times the condition, up to 1e4. The first two updates of a
-// solve alone promise too much of kept factors: trusting them left 3e-11.
+// With the default tolerance, the remaining error is the round-off of a double times the condition number, up to 1e4.
+// The ratio of the first two updates of a solve underestimates the error of kept factors: a criterion by this ratio
+// alone left 3e-11.
 TEST(NewtonIteration, KeptFactorsLeaveRoundOff) {
   for (const char* scene :
        {"config/examples/sliding_arm.urdf", "config/examples/cantilever.urdf", "config/speed/double_pendulum.urdf"})

@@ -1,4 +1,4 @@
-// Which extrapolation a step starts from.
+// Tests which extrapolation the predictor chooses for the first guess of a step.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Simulation after_some_steps(const SceneBuilder& builder) {
   return simulation;
 }
 
-// A parabola is foreseen to round-off: the first update has nothing to do.
+// A parabola is predicted to round-off, so that the first update is only round-off.
 TEST(Predictor, ForeseesFreeFall) {
   SceneBuilder builder;
   builder.body("ball", 2, Vector3::Zero(), Matrix3::Identity());
@@ -29,12 +29,12 @@ TEST(Predictor, ForeseesFreeFall) {
   builder.scene.initial_links.push_back({"ball", {1, 2, 3}, Vector3::Zero(), {}});
   const Simulation simulation = after_some_steps(builder);
   EXPECT_GE(state_of(simulation).history.order, 1);
-  // A place of one metre to 64 roundings; the last velocity repeated would miss by g h^2 = 1e-3.
+  // The position is about 1 m: 64 roundings. Repeating the last velocity would be wrong by g h^2 = 1e-3.
   EXPECT_LT(update_norms_of(simulation).front(), 64 * std::numeric_limits<double>::epsilon());
 }
 
-// A mode that is far too fast for the step changes its sign from step to step: extrapolation would blow that up, and
-// repetition goes the wrong way.
+// A mode that is far too fast for the step changes its sign from step to step. Extrapolation would amplify it, and
+// repeating the last increment has the wrong sign. So the guess is the configuration at the beginning.
 TEST(Predictor, StandsWhereMotionChangesItsSign) {
   SceneBuilder builder;
   builder.beam("bar", {{1, 0, 0}}, section(1e8, 1e8, 1e2, 1e2, 1, 0.01, 0.01), 1, 1);

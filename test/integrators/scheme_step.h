@@ -1,5 +1,5 @@
 #pragma once
-/// Steps of every scheme from random states, for tests of the step's residual and tangent.
+/// Test fixture: steps of every scheme from random states, to test residual and tangent of a step.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 
 namespace flexarm::test {
 
-/// The variants whose tangent is that of the residual: that of symmetric middle functions leaves their variation out.
+/// The schemes with a consistent tangent. Symmetric middle functions are left out: their tangent neglects their
+/// variation.
 inline std::vector<SchemeVariant> with_consistent_tangent() {
   std::vector<SchemeVariant> variants;
   for (const SchemeVariant& variant : scheme_variants(0.2))
@@ -21,10 +22,10 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
  protected:
   const Scheme& scheme() const { return GetParam().scheme; }
 
-  /// The state with what the scheme keeps in it, random where it may be.
+  /// Adds the scheme's own data to the state, with random values where possible.
   State prepared(State state, StepSystem& system, RandomSource& random) const {
     system.initialise(state);
-    RandomSource of_memory(7);  // its own, so that all schemes that keep no more than this step from the same state
+    RandomSource of_memory(7);  // a generator of its own, so that all other random values are the same for all schemes
     for (StrainMemory& memory : state.strain_memory)
       memory = {0.1 * of_memory.vector6(), of_memory.vector6(), of_memory.vector6()};
     for (Vector6& force : state.forces) force = random.vector6();
@@ -35,8 +36,8 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
     return state;
   }
 
-  /// Slow enough that smooth friction is not saturated: its slope counts. The increment over which it changes is
-  /// step * speed = 0.03.
+  /// Compares tangent and differences in a step slow enough that smooth friction is not saturated and its slope counts.
+  /// Friction changes over an increment of step * speed = 0.03.
   void expect_consistent_tangent_of_a_slow_step(const Model& model, unsigned seed) const {
     RandomSource random(seed);
     StepSystem system(model, scheme(), BackendChoice::Matrix);
@@ -51,7 +52,8 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
     system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.01));
     expect_consistent_tangent(system, divides_by_work() ? 0.001 : 0.03);
   }
-  /// A beta correction divides by a work of the increments: the residual changes its shape over a part of them.
+  /// Whether the scheme has a beta correction. It divides by a work of the increments, so that the residual is
+  /// nonlinear over a small part of the increments.
   bool divides_by_work() const {
     return scheme().correction == EnergyCorrection::AxialBeta || scheme().correction == EnergyCorrection::FullBeta;
   }

@@ -1,4 +1,5 @@
-// Whole steps of sliders by each of their algorithms, on lines of elements and smooth ones, within elements and across.
+// Compares the tangent of whole steps of sliders with differences: for each algorithm, on lines of elements and smooth
+// lines, within an element and across borders.
 #include "integrators/consistent_tangent.h"
 #include "integrators/mechanism.h"
 #include "integrators/stepper.h"
@@ -16,7 +17,7 @@ struct SlideCase {
   }
 };
 
-/// A line of six elements of two links, welded, on which an arm with a body slides.
+/// A line of six elements, on two links that are welded together. An arm with a body slides on it.
 scene::SceneDescription sliding_arm(const SlideCase& c) {
   using scene::JointKind;
   SceneBuilder b;
@@ -43,7 +44,8 @@ TEST_P(SlideStepOf, TangentIsConsistent) {
   while (model.joints[s].kind != JointMapKind::Slide) ++s;
   ASSERT_EQ(model.slide_lines[0].pieces.size(), 5u);
   RandomSource random(1);
-  // Elements are 0.41 m long, then 0.55 m; from 1.0 m: within, over the weld, over two borders, backwards.
+  // The elements are 0.41 m long, then 0.55 m. From 1.0 m the slider moves within an element, over the weld, over two
+  // borders, and backwards.
   for (const double travel : {0.1, 0.5, 0.95, -0.3}) {
     StepSystem system(model, *find_scheme(GetParam().scheme), BackendChoice::Matrix);
     State state = random_state(model, random, 0.1);
@@ -59,7 +61,8 @@ TEST_P(SlideStepOf, TangentIsConsistent) {
   }
 }
 
-// One system's pattern follows the slider: at every place its tangent is that of a system made there.
+// The matrix pattern of a system follows its slider: at every place, the tangent equals that of a system that was made
+// there.
 class SlidePattern : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Lines, SlidePattern, ::testing::Bool());
 
@@ -93,8 +96,8 @@ TEST_P(SlidePattern, FollowsTheSlider) {
     evaluate(walking, x, x + 0.06);
     evaluate(fresh, x, x + 0.06);
     EXPECT_EQ(dense(matrix_of(walking)), dense(matrix_of(fresh))) << x;
-    // The elements, the arm's 12 unknowns with 1 + 3 of the joint, their coupling with the nodes of the active
-    // elements, and the coupling of these: of 208 * 208.
+    // Largest number of entries, out of 208 * 208: the elements, the arm's 12 unknowns with 1 + 3 of the joint, their
+    // coupling with the nodes of the active elements, and the coupling of these nodes with each other.
     const std::size_t elements = is_smooth ? 4 : 2, nodal = 6 * (2 * elements + 1);
     const std::size_t uncoupled = 18 * 18 * elements - 36 * (elements - 1);
     EXPECT_LE(matrix_of(walking).values().size(),

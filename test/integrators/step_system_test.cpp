@@ -1,4 +1,5 @@
-// The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
+// Tests the residual and the tangent of a whole step, its numbering of unknowns, step control and conservation, on a
+// mechanism with every kind of element.
 #include "analysis/statics.h"
 #include "integrators/energies.h"
 #include "integrators/scheme_step.h"
@@ -15,7 +16,7 @@ using namespace test;
 class StepSystemOf : public SchemeStep {};
 class ConsistentTangent : public SchemeStep {};
 
-/// All else as it is by default.
+/// Step settings; everything else has its default.
 StepSettings newton_settings(double step, double tolerance, int max_iterations, int max_halvings) {
   StepSettings settings;
   settings.step = step;
@@ -25,7 +26,7 @@ StepSettings newton_settings(double step, double tolerance, int max_iterations, 
   return settings;
 }
 
-/// The mechanism without friction, which turns over increments too small for the differences.
+/// The mechanism without friction: friction changes over increments that are too small for the differences.
 Model smooth_model() {
   Model model = build_model(every_joint_scene(false));
   for (Coordinate& coordinate : model.coordinates) coordinate.friction = 0;
@@ -50,8 +51,9 @@ TEST_P(ConsistentTangent, TangentOfAStepWithStickingFriction) {
 TEST_P(ConsistentTangent, TangentInsideAStop) {
   Model model = smooth_model();
   for (Coordinate& coordinate : model.coordinates)
-    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0, 2.0, 2.0};  // the slider's travel is about zero
-  RandomSource random(5);  // with which no slider is near the end of an element, where forces have a kink
+    // The slider's travel is around zero, inside the stop
+    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0, 2.0, 2.0};
+  RandomSource random(5);  // a seed for which no slider is near the end of an element, where forces have a kink
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, Guess::Unchanged);
@@ -59,8 +61,8 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
   expect_consistent_tangent(system, divides_by_work() ? 0.001 : 0.15);
 }
 
-// A Newton update moves slaves with their joints, prescribed coordinates along their motion and mimics with their
-// master.
+// A Newton update moves slaves with their joints, prescribed coordinates along their motion, and mimics with the joints
+// that they mimic.
 TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
   const Model model = build_model(every_joint_scene(false));
   RandomSource random(4);
@@ -224,7 +226,8 @@ TEST(DegreesOfFreedom, ClampedBeamHasItsFreeNodesOnly) {
 TEST(Statics, AFailureLeavesTheStateUntouched) {
   SceneBuilder builder;
   builder.beam("beam", {Vector3(1, 0, 0)}, section(10, 10, 1, 1, 1, 1, 1), 2, 2);
-  builder.joint("hinge", scene::JointKind::Continuous, "world", "beam");  // a mechanism: no equilibrium
+  // The beam can rotate freely, so there is no equilibrium
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "beam");
   builder.load("beam", Vector3(1, 0, 0), Vector3::Zero(), Vector3(0, 0, 1));
   const Model model = build_model(builder.scene);
   State state = initial_state(model);
@@ -281,14 +284,15 @@ class EnergyConservingSchemes : public ::testing::TestWithParam<SchemeVariant> {
 TEST_P(MomentumConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
   const Scheme& scheme = GetParam().scheme;
   scene::SceneDescription scene = every_joint_scene(true);
-  // Velocities that every joint allows come from released rates; the mimics' are left at rest. The loops hold at the
-  // start.
+  // Initial rates of the released coordinates give velocities that every joint allows. The mimics stay at rest. The
+  // loops are closed at the start.
   scene.initial_joints = {{"base/rx", 0, 0.5, {}}, {"base/rz", 0, -0.7, {}}, {"base/y", 0, 0.4, {}},
                           {"wrist/1", 0, 0.8, {}}, {"ball/rx", 0, -0.6, {}}, {"roll/1", 0, 0.3, {}},
                           {"roll/2", 0, 0.9, {}},  {"flight/z", 0, 0.2, {}}, {"flight/ry", 0, 0.6, {}},
                           {"plane/x", 0, 0.3, {}}, {"plane/rz", 0, 0.9, {}}, {"throw/rx", 0, 0.5, {}}};
   const Model model = build_model(scene);
-  // The thesis's beta divides by what vanishes where the axial strain rests; then it needs shorter steps, or fails.
+  // The beta of the thesis divides by a term that vanishes while the axial strain does not change. Then the scheme
+  // needs shorter steps, or fails.
   const bool is_fragile = scheme.correction == EnergyCorrection::AxialBeta;
   Stepper stepper(model, scheme, newton_settings(1e-2, 1e-10, 20, is_fragile ? 5 : 0));
   State state = initial_state(model);
@@ -299,7 +303,7 @@ TEST_P(MomentumConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
   for (int step = 0; step < 20; ++step) {
     ASSERT_TRUE(stepper.advance(state).converged);
     const Momenta now = momenta(model, scheme, state);
-    // What Newton leaves: its tolerance times forces of order 100 times the step, per step.
+    // Error of Newton's method: per step, the tolerance times forces of order 100 times the step.
     EXPECT_LE((now.linear - before.linear).norm(), 1e-9);
     EXPECT_LE((now.angular - before.angular).norm(), 1e-9);
     if (scheme.conserves_energy) {

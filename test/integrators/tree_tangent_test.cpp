@@ -1,4 +1,4 @@
-// The elimination along the tree against the assembled matrix, for whole steps of every scheme.
+// Compares elimination along the tree with the assembled matrix, for whole steps of every scheme.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -23,11 +23,12 @@ Model rubbing(Model model) {
   return model;
 }
 
-/// |A x - b| over |A| |x| + |b| after an elimination; thousands of operations on fronts that are not pivoted against
-/// each other.
+/// Bound of |A x - b| over |A| |x| + |b| after an elimination: thousands of operations, on fronts without pivoting
+/// between fronts.
 constexpr double kBackwardError = 1e-12;
 
-/// Of random displacements of a scene. Where something touches they are small against what it may give way by.
+/// Size of random displacements of a scene. In scenes with contact they are small against the depth by which contacts
+/// give way.
 double displacement_of(const Model& model) {
   const bool touches = std::any_of(model.force_elements.begin(), model.force_elements.end(),
                                    [](const auto& element) { return element->hits(); });
@@ -49,7 +50,7 @@ void expect_equal_solutions(StepSystem& matrix, StepSystem& tree) {
 
 class TreeSystem : public SchemeStep {
  protected:
-  /// Both systems at the same random trial; every other coordinate with dry friction rests.
+  /// Compares both systems at the same random trial configuration. Every other coordinate with dry friction sticks.
   void expect_equal_solutions_of_a_step(const Model& model) const {
     StepSystem matrix(model, scheme(), BackendChoice::Matrix), tree(model, scheme());
     RandomSource random(1);
@@ -68,7 +69,7 @@ TEST_P(TreeSystem, SolvesWithTheTangentOfAStep) {
   for (const bool floating : {false, true}) expect_equal_solutions_of_a_step(build_model(every_joint_scene(floating)));
 }
 
-// Joints that friction holds: their rows are replaced.
+// Friction holds joints, so that their rows are replaced.
 TEST_P(TreeSystem, SolvesWhereFrictionHolds) {
   if (scheme().is_composition) GTEST_SKIP() << "its step backwards refuses friction that sticks";
   expect_equal_solutions_of_a_step(rubbing(build_model(every_joint_scene(false))));
@@ -86,7 +87,7 @@ Model model_of(const std::string& file) {
   return build_model(*scene::read_scene_file(file).scene);
 }
 
-// Twice, so that what was found for the first place of a slider is found anew for the second one.
+// Each scene is solved at two places of its sliders, so that data of the first place must be replaced at the second.
 TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
   for (const std::string& file : scene_files()) {
     SCOPED_TRACE(file);
@@ -96,7 +97,7 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
       matrix.emplace(model, scheme(), BackendChoice::Matrix);
       tree.emplace(model, scheme());
     } catch (const ModelError&) {
-      continue;  // dry friction in a step backwards
+      continue;  // dry friction in a backward sub-step
     }
     RandomSource random(2);
     const double size = displacement_of(model);
@@ -113,7 +114,8 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
 INSTANTIATE_TEST_SUITE_P(Schemes, TreeSystem, ::testing::ValuesIn(scheme_variants(0.2)),
                          [](const auto& info) { return info.param.name; });
 
-// Without inertia, which helps dynamics, and with forces that stiffen. Joints that nothing holds are singular here.
+// Statics has no inertia to make the tangent regular, and has forces that stiffen. Joints that nothing holds make the
+// tangent singular.
 TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
   const Scheme statics = statics_of(schemes().front());
   int regular = 0;
@@ -137,7 +139,7 @@ TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
   EXPECT_GT(regular, 0);
 }
 
-// A nut on a screw without load: pivots are zero but for round-off.
+// A nut on a screw without load: the pivots are zero up to round-off.
 TEST(TreeTangent, ReportsWhatNothingHolds) {
   const Model model = model_of(source_path("config/thesis/12_1_screw_node_to_element.urdf"));
   StepSystem system(model, statics_of(schemes().front()));

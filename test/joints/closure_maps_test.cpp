@@ -1,4 +1,4 @@
-// Constraints that close loops: derivatives, discrete gradient, momenta.
+// Tests the constraints that close loops: derivatives of their rows, discrete gradient, and conservation of momenta.
 #include "joints/closure_maps.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,8 @@ TEST_P(ClosureKind, BlocksAreTheDerivativesOfTheLeftRows) {
   }
 }
 
-// The exact change of the value over a step: a multiplier does no work where it does not change.
+// The mean rows give the exact change of the constraint's value over a step. So a multiplier does no work if the value
+// does not change.
 TEST_P(ClosureKind, MeanRowsAreADiscreteGradient) {
   for (int repeat = 0; repeat < 20; ++repeat) {
     const RandomClosure c(random, GetParam());

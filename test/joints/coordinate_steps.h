@@ -1,12 +1,12 @@
 #pragma once
-/// Steps of coordinates, and slopes of efforts by differences.
+/// Steps of joint coordinates, and slopes of their efforts by differences.
 
 #include "elements/differences.h"
 #include "joints/coordinate_step.h"
 
 namespace flexarm::test {
 
-/// Without a rate at the beginning.
+/// A step from `begin` to `end`, without a rate at the beginning.
 inline CoordinateStep step_between(double begin, double end, double step) {
   CoordinateStep change;
   change.begin = begin;
@@ -16,7 +16,7 @@ inline CoordinateStep step_between(double begin, double end, double step) {
   return change;
 }
 
-/// d(effort(change))/d(end) by differences with a step small against `scale`.
+/// d(effort(change))/d(end) by differences, with a step that is small against `scale`.
 template <class Effort>
 double slope_by_difference(const Effort& effort, const CoordinateStep& change, double scale) {
   return scalar_difference(

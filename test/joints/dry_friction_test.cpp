@@ -1,4 +1,4 @@
-// The set-valued law of one coordinate, and the force that presses on a joint.
+// Tests the set-valued law of dry friction of one coordinate, and the normal force in a joint.
 #include "joints/dry_friction.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Solves K x = b - y with the effort y(x) of the law; returns revisions, at most 20.
+/// Solves K x = b - y, where y(x) is the effort of the law. Returns the number of revisions, at most 20.
 int solve(StickSlip& law, double K, double b, double capacity, double& increment, double& effort) {
   for (int n = 0; n < 20; ++n) {
     increment = law.is_held() ? law.held_increment() : (b - law.direction() * capacity) / K;
@@ -21,14 +21,14 @@ int solve(StickSlip& law, double K, double b, double capacity, double& increment
   return 20;
 }
 
-/// Smallest and largest effort of the staircase at x; `knot`: whether x is a knot.
+/// Smallest and largest effort that the set-valued law allows at the increment x. Its steps are at 0 and at `rest`.
 std::pair<double, double> efforts_at(double x, double rest, double capacity) {
   const double low = std::min(rest, 0.0), high = std::max(rest, 0.0);
   const double from = x <= low ? -1 : x <= high ? 0 : 1, to = x < low ? -1 : x < high ? 0 : 1;
   return low == high && x == low ? std::pair{-capacity, capacity} : std::pair{from * capacity, to * capacity};
 }
 
-// From every guess, for every load and every increment of rest.
+// The solution is found for every first guess, every load, and every increment that stops the coordinate.
 TEST(StickSlip, FindsTheSolutionOfAMonotoneProblem) {
   const double K = 3, capacity = 2;
   for (const double rest : {0.0, 0.5, -0.5})
@@ -50,7 +50,7 @@ TEST(StickSlip, RestsOnlyWhereItEndsAtRest) {
   StickSlip law;
   double x = 0, effort = 0;
   law.begin(0.5, 1);
-  solve(law, 3, 2, 2, x, effort);  // x = 1/2 takes an effort of 1/2
+  solve(law, 3, 2, 2, x, effort);  // x = 1/2 needs an effort of 1/2
   EXPECT_EQ(x, 0.5);
   EXPECT_TRUE(law.is_stopped());
   law.begin(0.5, 1);
@@ -60,7 +60,7 @@ TEST(StickSlip, RestsOnlyWhereItEndsAtRest) {
   EXPECT_FALSE(law.is_stopped());
 }
 
-// Nothing presses: no friction, whatever the branch.
+// Without normal force there is no friction on any branch of the law.
 TEST(StickSlip, CapacityZeroIsFree) {
   for (const double b : {-1.0, 0.0, 1.0}) {
     StickSlip law;

@@ -1,4 +1,4 @@
-// Passive efforts on coordinates: damping and friction; stops are in joint_stop_test.cpp.
+// Tests passive efforts on coordinates: damping and friction. joint_stop_test.cpp tests stops.
 #include "joints/joint_forces.h"
 
 #include <gtest/gtest.h>
@@ -28,12 +28,12 @@ TEST(PassiveEffort, DampingAndFriction) {
       CoordinateStep change = step_between(0.2, 0.2 + rate * h, h);
       change.increment = rate * h;
       change.gamma = gamma;
-      change.begin_rate = gamma == 1.0 ? 123.0 : rate;  // plays no part in the mean rate
+      change.begin_rate = gamma == 1.0 ? 123.0 : rate;  // has no influence on the mean rate
       const PassiveEffort effort = passive_effort(coordinate, penalty, change);
       EXPECT_NEAR(effort.effort, -0.7 * rate - 1.3 * std::tanh(rate / kFrictionSpeed), 1e-12);
       EXPECT_GE(effort.dissipated, 0);
       EXPECT_NEAR(effort.dissipated, -effort.effort * change.increment, 1e-15);
-      const double scale = kFrictionSpeed * h * gamma;  // of the increment, over which friction changes
+      const double scale = kFrictionSpeed * h * gamma;  // size of an increment over which friction changes
       EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, penalty, change, scale), 1e-9 / scale);
     }
 }

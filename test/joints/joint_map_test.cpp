@@ -1,4 +1,4 @@
-// One tester for the maps of all elementary joints.
+// Tests the maps of all elementary joints against kinematics and differences.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// {released rows, master rows} of the slave's residual.
+/// The slave's residual g, folded into {released rows, master rows}.
 Eigen::VectorXd folded(const FoldMaps& maps, const Vector6& g) {
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
   Eigen::VectorXd rows(maps.left.cols() + 6);
@@ -23,14 +23,15 @@ Eigen::VectorXd folded(const JointStep& step, const Vector6& g, Form form) {
   return folded(maps_of(step, g, form), g);
 }
 
-/// Increments from tiny to large, on both sides of where a series hands over to a closed form (0.05 / 1.2).
+/// Sizes of increments, from tiny to large, and on both sides of the switch from a series to a closed form (at 0.05 /
+/// 1.2).
 const double kSizes[] = {1e-10, 1e-5, 0.0416, 0.0417, 0.3, 1.0, 1.7};
 
 class JointMaps : public OfEveryJoint {};
-class JointMapsOnANode : public OfEveryJoint {};  // the world takes the reactions of the others
+class JointMapsOnANode : public OfEveryJoint {};  // on the world the reactions would not be found in any row
 
-// The slave's displacement and tangent-scaled rotation increment are the left map of the released and master
-// increments.
+// The left map, applied to the released and the master's increments, gives exactly the slave's displacement and
+// tangent-scaled rotation increment.
 TEST_P(JointMaps, IncrementsAreMappedExactly) {
   for (const double size : kSizes)
     for (int repeat = 0; repeat < 5; ++repeat) {
@@ -42,12 +43,13 @@ TEST_P(JointMaps, IncrementsAreMappedExactly) {
       const Vector3 turn = cayley::increment(step.master_begin.orientation, step.master_end.orientation);
       mapped << step.master_end.position - step.master_begin.position + turn.cross(maps.lever_left), turn;
       mapped += maps.left * released_increment(step.joint, step.begin, step.end);
-      // Near half a turn the tangent-scaled vector itself amplifies round-off with its square.
+      // Near half a turn, the tangent-scaled vector amplifies round-off with its square.
       EXPECT_LE(largest(increment - mapped), 1e-13 * std::max(1.0, increment.squaredNorm())) << "size " << size;
     }
 }
 
-// No force on the slave is lost, and moments balance about the mid-step positions (joints.md, section 0).
+// Folded forces have the same resultant as the slave's, and moments balance about the mid-step positions (joints.md,
+// section 0).
 TEST_P(JointMapsOnANode, FoldedForcesKeepTheirResultants) {
   for (const double size : kSizes) {
     const JointStep step = random(size);
@@ -61,7 +63,8 @@ TEST_P(JointMapsOnANode, FoldedForcesKeepTheirResultants) {
   }
 }
 
-// An arm is a rigid joint behind the joint: what the rigid one passes on is folded as without an arm. (joints.md 1.6)
+// An arm is a rigid joint outboard of the joint. So folding with an arm equals folding through a rigid joint, then
+// through the joint without an arm (joints.md 1.6).
 TEST_P(JointMaps, AnArmIsARigidJointBehind) {
   for (const double arm_weight : {0.5, 0.0})
     for (const Form form : {Form::Variational, Form::Incremental}) {
@@ -110,7 +113,7 @@ TEST_P(JointMaps, ColumnsAreTheDerivativeOfTheSlave) {
 TEST_P(JointMaps, GeometricBlocksAreTheDerivativeOfTheFoldedResidual) {
   for (const Form form : {Form::Variational, Form::Incremental})
     for (const double size : kSizes) {
-      if (size > 1) continue;  // close to half a turn of the slave the maps change too fast for differences
+      if (size > 1) continue;  // near half a turn of the slave, the maps change too fast for differences
       const JointStep step = random(size);
       const Vector6 g = source.vector6();
       const FoldMaps maps = maps_of(step, g, form);
@@ -160,7 +163,7 @@ TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
   joint.rotation = Vector3::UnitX();
-  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});  // the axis is y of the world
+  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});  // the axis is the y axis of the world
   Released released;
   released.displacement[0] = kPi / 2;
   const NodePose slave = slave_pose(joint, NodePose(), released);
@@ -179,11 +182,11 @@ TEST(SlavePose, PrismaticJointShiftsAlongItsAxis) {
   Released released;
   released.displacement[0] = 3;
   const NodePose slave = slave_pose(joint, NodePose(), released);
-  // Four entries of a quaternion, each rounded, turn the way of 3 m.
+  // The round-off of a quaternion's four entries rotates the travel of 3 m.
   EXPECT_LE((slave.position - Vector3(1, 3, 0)).norm(), 4 * 3 * std::numeric_limits<double>::epsilon());
 }
 
-// A full turn and more: only the step matters, not the angle.
+// Angles of more than a full turn: only the increment in a step is limited, not the angle.
 TEST(SlavePose, AnglesMayExceedATurn) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;

@@ -1,4 +1,4 @@
-// Rates and updates of all elementary joints.
+// Tests velocities, rates and updates of all elementary joints.
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
@@ -24,7 +24,7 @@ TEST_P(JointRates, VelocitiesAndRatesAreInverse) {
   EXPECT_LE(largest(found - rates), 1e-13);
   EXPECT_LE(largest(remainder), 1e-13);
 
-  // Against the motion itself.
+  // Compares the velocity with a difference of the motion itself.
   const Vector6 expected = difference([&](double h) {
     const Vector3 spin = h * master.tail<3>();
     const NodePose moved_master = node_at(step.master_end.position + h * master.head<3>(),
@@ -37,8 +37,8 @@ TEST_P(JointRates, VelocitiesAndRatesAreInverse) {
   EXPECT_LE(largest(slave - expected), difference_tolerance);
 }
 
-// A velocity that the joint does not allow: what remains is orthogonal to what it allows (least squares), at the moved
-// joint frame's origin.
+// For a velocity that the joint does not allow, the remainder is orthogonal to the allowed velocities (least squares),
+// at the origin of the moved joint frame.
 TEST_P(JointRates, RemainderIsOrthogonal) {
   const JointStep step = random(0.5);
   const Vector6 slave = source.vector6();

@@ -1,3 +1,4 @@
+// Random steps of joints for tests; see joint_step.h.
 #include "joints/joint_step.h"
 
 #include "math/so3.h"
@@ -31,7 +32,7 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
   if (kind.translates) out.joint.translation = 0.7 * random.unit();
   if (kind.rotates) out.joint.rotation = 1.2 * random.unit();
   if (kind.kind == JointMapKind::Scalar) place(out.joint, Pose());
-  if (kind.by_profile)  // analytic: differences must not cross knots
+  if (kind.by_profile)  // analytic, since differences must not cross knots
     out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
   if (!world) {
     out.master_begin = node_at(random.vector(), random.rotation(3));

@@ -1,5 +1,5 @@
 #pragma once
-/// Joints of each kind over random steps, for the tests of their maps and of their rates.
+/// Random steps of joints of each kind, for tests of their maps and rates.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ struct JointStep {
   Released begin, end;
 
   int released() const { return released_count(joint.kind); }
-  /// Scalars that the slave depends on: the released ones, then {dr, spin} of the master where that is a node.
+  /// Number of scalars that determine the slave's pose: the released ones, then {dr, spin} of the master if it is a
+  /// node.
   int columns() const { return released() + (joint.master < 0 ? 0 : 6); }
   NodePose slave_begin() const { return slave_pose(joint, master_begin, begin); }
   NodePose slave_end() const { return slave_pose(joint, master_end, end); }
@@ -26,15 +27,15 @@ struct JointStep {
     return out;
   }
 
-  /// The end displaced by h along one of columns().
+  /// The step whose end is displaced by h along one of columns().
   JointStep perturbed(int column, double h) const;
 };
 
 struct KindOfJoint {
   const char* name;
   JointMapKind kind;
-  bool translates, rotates;  // Scalar
-  bool by_profile = false;   // its travel
+  bool translates, rotates;  // of kind Scalar
+  bool by_profile = false;   // whether a cam profile gives the travel
 };
 
 inline const KindOfJoint kKinds[] = {
@@ -43,14 +44,15 @@ inline const KindOfJoint kKinds[] = {
     {"Cam", JointMapKind::Scalar, true, true, true},  {"Spherical", JointMapKind::Spherical, false, false},
     {"Free", JointMapKind::Free, false, false}};
 
-/// Increments of size `size` in everything; axes are neither unit vectors nor parallel to each other.
+/// A random step with increments of size `size` in all quantities. The axes are neither unit vectors nor parallel to
+/// each other.
 JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world, double size);
 
 enum class Form { Variational, Incremental };
 
 FoldMaps maps_of(const JointStep& step, const Vector6& g, Form form, bool with_tangent = true, double arm_weight = 0.5);
 
-/// A kind of joint, and whether it is on the world.
+/// A kind of joint, and whether its master is the world.
 using Parameter = std::tuple<KindOfJoint, bool>;
 class OfEveryJoint : public ::testing::TestWithParam<Parameter> {
  protected:

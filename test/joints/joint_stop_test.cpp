@@ -1,4 +1,4 @@
-// Stops: what they do over a step, how deep they let in, what they give back.
+// Tests stops of joints: effort and energy over a step, depth of penetration, and restitution.
 #include "joints/joint_stop.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr double kLower = -1, kUpper = 2, kStiffness = 50, kInertia = 2;
 
-/// Stops that give way by at most `give`; infinite: linear ones.
+/// Stops with the largest penetration `give`. If it is infinite, the stop is linear.
 LimitStop stops(double give) {
   return {kLower, kUpper, kInertia, give, give};
 }
@@ -29,7 +29,7 @@ StopPenalty penalty_with(double damping) {
   return penalty;
 }
 
-/// Of the Newmark family.
+/// A step of the Newmark family, whose effort acts at the end.
 CoordinateStep step_to_end(double begin, double end, double step, double begin_rate) {
   CoordinateStep change = step_between(begin, end, step);
   change.at_end = true;
@@ -44,7 +44,7 @@ double stop_slope_by_difference(const LimitStop& limit, const StopPenalty& penal
                              change, scale);
 }
 
-/// Positions on both sides of both stops and on them.
+/// Positions inside, at, and beyond both stops.
 const double kPositions[] = {-1.6, -1.2, -1.0, -0.99, 0.0, 1.5, 2.0, 2.001, 2.5};
 
 TEST(StopEffort, InStaticsIsTheGradientOfItsEnergy) {
@@ -63,7 +63,7 @@ TEST(StopEffort, InStaticsIsTheGradientOfItsEnergy) {
   }
 }
 
-// Work of the stop = - change of its energy - what it dissipates, through every kind of contact.
+// For every kind of contact, the work of the stop equals minus the change of its energy minus the dissipation.
 TEST(StopEffort, ClosesTheEnergyBudget) {
   for (const double give : kGives)
     for (const double damping : {0.0, 0.5, 40.0}) {
@@ -83,7 +83,7 @@ TEST(StopEffort, ClosesTheEnergyBudget) {
     }
 }
 
-// Near where a stop gives way no further, and over increments of any size, the quotients do not cancel.
+// The formulas do not lose digits by cancellation, near the largest penetration and for increments of any size.
 TEST(StopEffort, BudgetClosesInTheDepth) {
   const LimitStop limit = stops(0.5);
   const StopPenalty penalty = penalty_with(0);
@@ -92,12 +92,12 @@ TEST(StopEffort, BudgetClosesInTheDepth) {
       const double begin = kUpper + 0.5 - room, end = begin + part * room;
       const double work = stop_effort(limit, penalty, step_between(begin, end, 0.1)).effort * (end - begin);
       const double before = stop_energy(limit, penalty, begin), after = stop_energy(limit, penalty, end);
-      // Round-off of the energies: that of a position, by the growth of the energy with it.
+      // Tolerance: round-off of the energies, i.e. of a position, times the derivative of the energy.
       EXPECT_NEAR(work + after - before, 0, 1e-15 * after * 6 * (1 + kUpper / room)) << room << " " << part;
     }
 }
 
-// A stop pushes out or not at all.
+// The effort of a stop always pushes outwards, or is zero.
 TEST(StopEffort, NeverPulls) {
   for (const double give : kGives)
     for (const double damping : {0.5, 40.0}) {
@@ -105,7 +105,7 @@ TEST(StopEffort, NeverPulls) {
       const StopPenalty penalty = penalty_with(damping);
       for (const double begin : kPositions)
         for (const double end : kPositions) {
-          if ((begin < 0) != (end < 0)) continue;  // from one stop to the other
+          if ((begin < 0) != (end < 0)) continue;  // a step from one stop to the other
           for (const CoordinateStep& change :
                {step_between(begin, end, 0.1), step_to_end(begin, end, 0.1, (end - begin) / 0.1)}) {
             const double effort = stop_effort(limit, penalty, change).effort;
@@ -125,14 +125,14 @@ TEST(StopEffort, Slope) {
           for (const CoordinateStep& change :
                {step_between(begin, end, 0.1), step_to_end(begin, end, 0.1, 10 * (end - begin) + 0.1)}) {
             const double slope = stop_effort(limit, penalty, change).slope;
-            // Round-off of differences of the quotient: epsilon / (increment * step).
+            // Round-off of a difference of the quotient: epsilon / (increment * step).
             EXPECT_NEAR(slope, stop_slope_by_difference(limit, penalty, change, 0.01), 1e-6 * (1 + std::abs(slope)))
                 << begin << " -> " << end << " damping " << damping << " give " << give << " " << change.at_end;
           }
     }
 }
 
-// Neither touch nor release makes the effort jump: a step that just touches has a solution.
+// The effort does not jump at touch and release. So a step that just touches has a solution.
 TEST(StopEffort, IsContinuousAtTouchAndRelease) {
   for (const double give : kGives) {
     const LimitStop limit = stops(give);
@@ -145,7 +145,7 @@ TEST(StopEffort, IsContinuousAtTouchAndRelease) {
                              at_end ? step_to_end(begin, end, 0.1, rate) : step_between(begin, end, 0.1))
               .effort;
         };
-        EXPECT_NEAR(effort(2.0 - 1e-9), effort(2.0 + 1e-9), 1e-5);  // slopes of 40 / 0.1 and 50 * 0.3 / 0.01 over 2e-9
+        EXPECT_NEAR(effort(2.0 - 1e-9), effort(2.0 + 1e-9), 1e-5);  // slopes of 40 / 0.1 and 50 * 0.3 / 0.01, over 2e-9
       }
   }
 }
@@ -164,7 +164,7 @@ TEST(StopEffort, IsContinuousForVanishingIncrements) {
   }
 }
 
-// Whatever presses is held before the stop has given way.
+// The effort grows without bound. So any force is held before the largest penetration.
 TEST(StopEffort, GrowsWithoutBound) {
   const LimitStop limit = stops(0.5);
   const StopPenalty penalty = penalty_with(0);
@@ -175,12 +175,13 @@ TEST(StopEffort, GrowsWithoutBound) {
     last = effort;
   }
   EXPECT_GT(last, 1e12);
-  // A shallow penetration feels nothing of it: 5 (p/d)^2 of its effort.
+  // At a shallow penetration the stop is nearly linear: the effort is larger by the fraction 5 (p/d)^2.
   const double shallow = stop_effort(limit, penalty, step_between(0, kLower - 1e-3, 0)).effort;
   EXPECT_NEAR(shallow, kStiffness * 1e-3, 1.1 * kStiffness * 1e-3 * 8 * std::pow(1e-3 / 0.5, 2));
 }
 
-/// A mass with the mid-point rule, 2 m/h (du/h - v) = Q, or with Newmark's. Halves steps as the stepper does.
+/// A mass against a stop, by the midpoint rule 2 m/h (du/h - v) = Q or by Newmark's rule. It halves steps as Stepper
+/// does.
 struct Mass {
   const LimitStop& limit;
   const StopPenalty& penalty;
@@ -196,7 +197,7 @@ struct Mass {
         at_end ? 4 / h * (increment / h - velocity) - acceleration : 2 / h * (increment / h - velocity);
     return kInertia * inertial - stop_effort(limit, penalty, change(increment, h)).effort;
   }
-  /// By bisection: the residual grows with the increment.
+  /// Bisection, since the residual is monotonic in the increment.
   double solve(double h) const {
     double low = -10, high = 10;
     high = std::min(high, limit.upper + limit.give_above - position);
@@ -226,14 +227,15 @@ TEST(StopEffort, EnergyThroughAHit) {
         const StopPenalty penalty = penalty_with(damping);
         Mass mass{limit, penalty, at_end, 1.5, 1.0};
         const double start = mass.energy();
-        // A position's round-off, 4e-16, grows in the energy by 4 over the room that is left: a 30th of the whole one
-        // at least, over some steps.
+        // A position's round-off, 4e-16, grows in the energy by the factor 4 over the remaining penetration. This is at
+        // least a 30th of the largest penetration, over some steps.
         const double round_off = std::max(1e-12, 2e-13 / give) * start;
         double deepest = 0;
         for (int step = 0; step < 200 && (mass.velocity > 0 || mass.position > limit.upper); ++step) {
           mass.advance(0.02);
           deepest = std::max(deepest, mass.position - limit.upper);
-          // Newmark's conserves the energy only of what is linear; what its efforts do is known as exactly.
+          // Newmark's rule conserves the energy only of linear systems, so the balance is checked for the midpoint rule
+          // alone.
           EXPECT_TRUE(at_end || std::abs(mass.energy() + mass.dissipated - start) <= round_off) << give;
         }
         EXPECT_GT(deepest, 0);
@@ -244,7 +246,7 @@ TEST(StopEffort, EnergyThroughAHit) {
       }
 }
 
-/// Ratio of the speeds after and before a hit; `steps` to the contact time of a shallow one.
+/// Ratio of the speeds after and before a hit. `steps`: number of steps in the contact time of a shallow hit.
 double restitution(const LimitStop& limit, double speed, double steps, bool at_end) {
   Coordinate coordinate;
   coordinate.limit = limit;
@@ -256,15 +258,16 @@ double restitution(const LimitStop& limit, double speed, double steps, bool at_e
   return -mass.velocity / speed;
 }
 
-// The restitution is that of a linear stop, 0.3, however deep the hit goes. The angle of a step is at most a fifth of
-// half a turn; the mid-point rule turns by less than that by a twelfth of its square, 3 %, which the damper turns into
-// 4 % of the restitution, and the release falls into the middle of a step: less than 10 % in all.
+// The restitution is that of a linear stop, 0.3, at any depth of the hit, with an error below 10 %. A step covers at
+// most a fifth of half a turn of the oscillation. The midpoint rule turns by less, by a twelfth of the square of this
+// angle, 3 %. This makes 4 % of the restitution by the damper. The rest is because the release falls into the middle of
+// a step.
 TEST(StopEffort, RestitutionIsTheSameAtAllSpeeds) {
   for (const double speed : {0.1, 1.0, 8.0, 20.0, 50.0, 200.0, 1000.0})
     EXPECT_NEAR(restitution(stops(0.01), speed, 10, false), 0.3, 0.03) << speed;
 }
 
-// A hit at 3 m/s is one in full steps, which converges as the mid-point rule does.
+// A hit at 3 m/s takes full steps, so its error converges as that of the midpoint rule.
 TEST(StopEffort, RestitutionConverges) {
   for (const bool at_end : {false, true})
     for (const double steps : {80.0, 320.0}) {
@@ -273,7 +276,8 @@ TEST(StopEffort, RestitutionConverges) {
     }
 }
 
-// The steps of the scene, ten to a contact, are fine enough for light touches, and for what rests on its stop.
+// The scene's step, a tenth of the contact time, is fine enough for light touches, and for a coordinate at rest on its
+// stop.
 TEST(StopEffort, LightTouchesAndRestAreNoHits) {
   const LimitStop limit = stops(0.5);
   Coordinate coordinate;
@@ -299,14 +303,14 @@ TEST(StopUpdate, GoesHalfTheWayAtMost) {
   EXPECT_EQ(admissible_part(stops(LimitStop::kInfinity), 0, 1e9), 1);
 }
 
-// A contact lasts as long as asked for, and gives 30 % of the speed back.
+// The penalty gives the requested contact time, and 30 % of the speed after the hit.
 TEST(StopPenalty, ContactTimeAndRestitution) {
   Coordinate coordinate;
   coordinate.limit = stops(LimitStop::kInfinity);
   const auto [k, c, end_c] = stop_penalty(coordinate, 1e-2);
   const double omega = std::sqrt(k / kInertia);
   EXPECT_NEAR(omega, kPi / 1e-2, 1e-9 * omega);
-  // m x'' = min(0, -k x - c x'), hit at unit speed: integrated finely until the force vanishes.
+  // The equation m x'' = min(0, -k x - c x') from unit speed, integrated with a small step until the force vanishes.
   double x = 0, v = 1;
   const double h = 1e-8;
   while (k * x + c * v > 0) {

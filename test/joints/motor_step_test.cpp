@@ -1,4 +1,4 @@
-// Springs with play, and motors behind rigid and elastic gears, over one step: work, slopes, laws.
+// Tests springs with play, and motors behind rigid and elastic gears, over one step: work, slopes, laws.
 #include "joints/motor_step.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Elasticity, NothingWithinThePlay) {
   EXPECT_EQ(effort.dissipated, 0);
 }
 
-/// The mid-point rule from rest or a rate.
+/// A rotor in a step of the midpoint rule, from rest or from a rate.
 RotorStep rotor_step(double angle, double rate) {
   RotorStep rotor;
   rotor.change = step_between(angle, angle, kStep);
@@ -98,7 +98,8 @@ TEST(MotorAction, SlopeByDifferences) {
     }
 }
 
-// Kinetic and elastic energy grow by the motor's work less that on the coordinate and what is dissipated.
+// The change of kinetic and elastic energy equals the motor's work less the work on the coordinate less the
+// dissipation.
 TEST(MotorAction, AccountsForEnergy) {
   for (const MotorCase& c : motor_cases())
     for (const double rate : {-2.0, 0.0, 3.0})
@@ -131,7 +132,7 @@ TEST(MotorAction, IsThatOfTheTorqueSpeedLine) {
   }
 }
 
-// A rotor that friction holds stands still to the last bit, until it is overcome.
+// A rotor that friction holds stands exactly still, until the effort exceeds friction.
 TEST(MotorAction, SticksUntilFrictionIsOvercome) {
   Drive drive;
   drive.inertia = 0.05;
@@ -148,14 +149,14 @@ TEST(MotorAction, SticksUntilFrictionIsOvercome) {
   }
   EXPECT_GT(motor_action(drive, {0.51, 0, 0}, rotor, link, 0).increment, 0);
   EXPECT_LT(motor_action(drive, {-0.51, 0, 0}, rotor, link, 0).increment, 0);
-  // With a rate at the beginning that friction may take, it comes to rest at the end.
+  // If friction can take away all of the initial rate, the rotor is at rest at the end of the step.
   rotor = rotor_step(0, 0.05);
   const MotorAction action = motor_action(drive, {0, 0, 0}, rotor, link, 0);
   EXPECT_TRUE(action.is_stopped);
   EXPECT_NEAR(rotor.rate_offset + rotor.rate_slope * action.increment, 0, 1e-15);
 }
 
-// In statics a rotor stands where gear and motor are in balance.
+// In statics, the rotor is where gear and motor are in equilibrium.
 TEST(MotorAction, InStatics) {
   Drive drive;
   drive.inertia = 0.05;
@@ -167,7 +168,7 @@ TEST(MotorAction, InStatics) {
   EXPECT_NEAR(action.effort, 6, 1e-12);
   EXPECT_NEAR(action.slope, 0, 1e-9) << "a constant effort has no stiffness";
   EXPECT_NEAR(action.increment, 0.2 + 6 / 300.0 + 0.01, 1e-14);
-  // A spring between rotor and ground, in series with the gear.
+  // A spring between rotor and ground is in series with the gear.
   action = motor_action(drive, {0, -100, 0}, rotor, link, 0);
   EXPECT_NEAR(action.slope, -1 / (1 / 300.0 + 1 / 100.0), 1e-9);
 }
@@ -182,7 +183,7 @@ TEST(MotorRange, IsTheTorqueSpeedLine) {
   EXPECT_EQ(turning.highest, 2);
 }
 
-/// What a controller asks for in the mean over a step is what it asks for at an instant, but for the step's length.
+/// The mean effort of a controller over a step tends to its effort at an instant as the step becomes shorter.
 TEST(ServoEffort, IsTheLimitOfShortSteps) {
   for (const ServoMode mode : {ServoMode::Position, ServoMode::Velocity, ServoMode::Effort}) {
     const ServoLaw law{mode, 30, 4, 7, 0.05};
@@ -198,7 +199,7 @@ TEST(ServoEffort, IsTheLimitOfShortSteps) {
       const double increment = h * at.rate;
       const ServoDemand mean = servo_demand(law, state, input);
       const double effort = servo_effort(law, at);
-      // Errors and integrals change by less than 1 per second, by half of which the means differ.
+      // Errors and integrals change by less than 1 per second. The means differ by half of this change.
       EXPECT_NEAR(mean.constant + mean.slope * increment, effort, 0.5 * h * (law.proportional + law.integral));
       ServoState after = state;
       advance(law, input, increment, -2, after);
@@ -210,7 +211,7 @@ TEST(ServoEffort, IsTheLimitOfShortSteps) {
 TEST(SmoothDirection, IsResolvedByTheRefinement) {
   EXPECT_FALSE(is_coarse_turn(0.1, 0.2, 1000)) << "does not turn";
   EXPECT_TRUE(is_coarse_turn(-0.1, 0.1, 1));
-  const double part = 0.1 * kFrictionSpeed;  // of the direction as well, nearly
+  const double part = 0.1 * kFrictionSpeed;  // also about this fraction of the direction
   EXPECT_FALSE(is_coarse_turn(0, part, 4));
   EXPECT_TRUE(is_coarse_turn(0, part, 6));
 }

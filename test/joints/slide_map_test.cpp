@@ -1,4 +1,5 @@
-// A section that slides along a line of several elements: its maps against exact kinematics and differences.
+// Tests the maps of a section that slides along a line of several elements, against exact kinematics, differences and
+// complex steps.
 #include "joints/slide_map.h"
 
 #include <gtest/gtest.h>
@@ -12,16 +13,16 @@ namespace {
 
 using namespace test;
 
-/// Kinds of lines: elements of one order, or of all, plain or smooth.
+/// Kinds of lines: elements of equal or different order, with the elements' own curve or a smooth one.
 struct LineKind {
-  int order;  // 0: 3, 2, 4
+  int order;  // 0: elements of the orders 3, 2 and 4
   bool smooth;
   friend std::ostream& operator<<(std::ostream& out, const LineKind& kind) {
     return out << (kind.smooth ? "smooth" : "elements") << " of order " << kind.order;
   }
 };
 
-/// A line of three elements, 1.5 m long, bent and twisted at random at both ends of a step.
+/// A line of three elements, 1.5 m long. It is bent and twisted at random at the beginning and at the end of a step.
 struct Travel {
   SlideLine line;
   std::vector<NodePose> begin, end;
@@ -60,7 +61,7 @@ struct Travel {
     pose.rotation = pose.orientation.toRotationMatrix();
   }
 
-  Travel perturbed(int column, double h) const {  // 0: arc length, then {dr, spin} of the nodes
+  Travel perturbed(int column, double h) const {  // column 0: arc length; then {dr, spin} of the nodes
     Travel out = *this;
     if (column == 0) {
       out.to += h;
@@ -85,7 +86,7 @@ struct Travel {
       slide_variational_maps(line, end, to, g, out, with_tangent);
     return out;
   }
-  /// {released row, rows of all nodes of the line}.
+  /// The rows {released row, rows of all nodes of the line}.
   Eigen::VectorXd rows(const Vector6& g, bool incremental) const {
     const SlideMaps m = maps(g, incremental, false);
     Eigen::VectorXd out = Eigen::VectorXd::Zero(1 + 6 * line.nodes.size());
@@ -95,8 +96,8 @@ struct Travel {
   }
 };
 
-/// Arc lengths at the beginning and the end: within an element, on a border, over one border and over two, both ways,
-/// and no travel at all.
+/// Arc lengths at the beginning and the end: within an element, at a border, over one and two borders, in both
+/// directions, and without travel.
 const std::pair<double, double> kTravels[] = {
     {0.5, 0.8}, {0.8, 0.5}, {0.3, 0.45},       {0.45, 0.3},       {0.1, 1.3}, {1.3, 0.1},        {0.4, 0.7},
     {0.7, 0.4}, {0.6, 0.6}, {0.6, 0.6 + 1e-7}, {0.4, 0.4 + 1e-9}, {0, 1.5},   {0.399999, 0.4001}};
@@ -108,8 +109,8 @@ const SlideStep kSteps[] = {SlideStep::SmEm,     SlideStep::MidContact, SlideSte
 const SlideStep kStepsOnTheLine[] = {SlideStep::SmEm, SlideStep::EndContact, SlideStep::EnterEnd,
                                      SlideStep::BeginWeights};
 
-// joints.md 4.3 to 4.5: the section's increments are exactly what the maps make of the nodes' and of Delta X. For the
-// weights of each of these steps that is so over any border.
+// joints.md 4.3 to 4.5: the maps, applied to the increments of the nodes and Delta X, give exactly the section's
+// increments. With the weights of each of these steps this also holds over any border.
 TEST_P(SlideMapsOfLine, IncrementsAreMappedExactly) {
   RandomSource random(1);
   for (const SlideStep form : kStepsOnTheLine)
@@ -131,13 +132,14 @@ TEST_P(SlideMapsOfLine, IncrementsAreMappedExactly) {
               cayley::increment(step.begin[node].orientation, step.end[node].orientation);
           mapped += maps.left[j] * increment;
         }
-        // Short travels take the curvature in the middle: error of third order in a travel of 1e-5.
+        // For short travels the maps use the curvature in the middle, with an error of third order in a travel of 1e-5.
         EXPECT_LE((mapped - expected).norm(), 2e-14) << size << ": " << from << " to " << to;
       }
 }
 
-// joints.md 4.4: with the contact in the middle the slave goes another way than the maps do, by -Delta I^j Delta r_j /
-// 2 within an element, and by the whole way over the line as it was at a border; less twice what it was off the line.
+// joints.md 4.4: with the contact in the middle of the step, the slave's displacement differs from that of the maps.
+// The difference is -Delta I^j Delta r_j / 2 within an element. At a border it is the whole travel along the line at
+// the beginning. Twice the slave's initial distance from the line is subtracted.
 TEST_P(SlideMapsOfLine, ContactInTheMiddleDoesTheWorkOfItsDefect) {
   RandomSource random(7);
   for (const SlideStep form : {SlideStep::MidContact, SlideStep::EnterMid})
@@ -165,8 +167,8 @@ Vector3 mean_arm(const Travel& step, const Vector3& begin, const Vector3& end) {
   return (1 - step.arm_weight) * begin + step.arm_weight * end;
 }
 
-/// Forces of the rows and their moments about the origin, with mean arms, sum up to those of the slave's residual g at
-/// `arm`.
+/// Expects that the forces of the rows, and their moments about the origin with mean arms, have the same resultant as
+/// the slave's residual g at `arm`.
 void expect_passed_on(const Travel& step, const Vector6& g, const Vector3& arm) {
   const Eigen::VectorXd rows = step.rows(g, true);
   Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
@@ -179,7 +181,7 @@ void expect_passed_on(const Travel& step, const Vector6& g, const Vector3& arm) 
   EXPECT_LE(moment.norm(), 2e-14) << step.from << " to " << step.to;
 }
 
-// Sum of forces and of moments about the origin, with mean arms, are those of the slave.
+// Resultant force and moment about the origin, with mean arms, are those of the slave's residual.
 TEST_P(SlideMapsOfLine, MomentaArePassedOn) {
   RandomSource random(2);
   for (const auto& [from, to] : kTravels) {
@@ -194,8 +196,9 @@ TEST_P(SlideMapsOfLine, MomentaArePassedOn) {
   }
 }
 
-// joints.md 4.4: with the contact in the middle, and with SM2's weights and arms, the momenta are exact; with that at
-// the end, the arm lacks e = Delta I^j Delta r_j / 4, and at a border half of the way over it in the line as it was.
+// joints.md 4.4: momenta are exact with the contact in the middle, and with the weights and arms of SM2. With the
+// contact at the end, the arm has the error e = Delta I^j Delta r_j / 4 within an element. At a border, the error is
+// half of the travel along the line at the beginning.
 TEST_P(SlideMapsOfLine, AlgorithmsPassOnMomentaAsTheirTablesSay) {
   RandomSource random(6);
   for (const SlideStep form : {SlideStep::MidContact, SlideStep::EndContact, SlideStep::EnterMid, SlideStep::EnterEnd,
@@ -209,7 +212,7 @@ TEST_P(SlideMapsOfLine, AlgorithmsPassOnMomentaAsTheirTablesSay) {
       const auto place = [&](const std::vector<NodePose>& nodes, double x) {
         return slide_pose(step.line, nodes, x).position;
       };
-      const Vector3 begin = place(step.begin, from) + 0.01 * random.vector();  // perhaps off the line already
+      const Vector3 begin = place(step.begin, from) + 0.01 * random.vector();  // the slave may be off the line already
       const bool is_in_middle = form == SlideStep::MidContact || form == SlideStep::EnterMid;
       const Vector3 r_begin = is_in_middle ? begin : place(step.begin, from);
       const Vector3 r_end = slide_pose(step.travel(), r_begin).position;
@@ -260,7 +263,7 @@ TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
   const auto check = [&](const Travel& step, bool incremental) {
     const Vector6 g = random.vector6();
     const SlideMaps maps = step.maps(g, incremental);
-    const double size = 0.25;  // of a rotation over which the rows change their shape: they divide by squares of them
+    const double size = 0.25;  // size of a rotation over which the rows are smooth: they divide by squares of rotations
     for (int column = 0; column <= 6 * maps.count; ++column) {
       const int global = column == 0 ? 0 : column + 6 * maps.first;
       const Eigen::VectorXd expected =
@@ -275,7 +278,8 @@ TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
         else
           actual.segment<3>(row + 3) = maps.moment_master[i * maps.count + j].col(c);
       }
-      // Where nothing has travelled, differences of the rows take the curvature's short form: rough to its square.
+      // Without travel, differences of the rows contain the approximation of short travels, whose error is the square
+      // of the difference.
       const double tolerance = (step.from == step.to ? 1e-6 : 10 * difference_tolerance / size) * (1 + expected.norm());
       EXPECT_LE((actual - expected).norm(), tolerance) << incremental << static_cast<int>(step.algorithm.within) << " "
                                                        << step.from << " " << step.to << ": " << column;
@@ -297,7 +301,7 @@ TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
   }
 }
 
-// Rows and all their derivatives against the same formulas in complex arithmetic: to round-off, at any travel.
+// Compares rows and all derivatives with the same formulas in complex arithmetic, to round-off, for any travel.
 TEST_P(SlideMapsOfLine, RowsAndDerivativesAgreeWithComplexSteps) {
   RandomSource random(8);
   const auto check = [&](const Travel& step, bool incremental) {
@@ -316,7 +320,7 @@ TEST_P(SlideMapsOfLine, RowsAndDerivativesAgreeWithComplexSteps) {
       derivatives.block<1, 6>(0, 1 + 6 * i) = maps.released_master[i].transpose();
       for (int k = 0; k < count; ++k) derivatives.block<3, 6>(4 + 6 * i, 1 + 6 * k) = maps.moment_master[i * count + k];
     }
-    // Over a travel that is not short, the turn is the quotient of rotations by it, and its derivative by its square.
+    // For longer travels, the rotation is divided by the travel, and its derivative by the square of the travel.
     const double travel = std::abs(step.to - step.from), quotient = incremental && travel > 1e-6 ? 1 / travel : 0;
     EXPECT_LE((rows - expected.rows).norm(), 1e-15 * (100 + quotient) * (1 + expected.rows.norm()));
     const double tolerance = 1e-15 * (1000 + quotient * quotient);

@@ -1,4 +1,4 @@
-// The rows are written for scalars of any kind, without any derivative.
+// The formulas of the rows are templates on their scalar type, and contain no derivatives.
 #include "joints/slide_rows.h"
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace flexarm::test {
 namespace {
 
 using Complex = std::complex<double>;
-/// Of complex steps: no cancellation, so as small as it likes.
+/// Complex steps have no cancellation, so this may be as small as desired.
 constexpr double kComplexStep = 1e-30;
-/// As in src/joints/slide_increment.cpp.
+/// The same constants as in src/joints/slide_increment.cpp.
 constexpr double kShort = 1e-5, kUniform = 1e-24;
 
 template <typename S>
@@ -22,12 +22,12 @@ double real(const S& value) {
   return std::real(value);
 }
 
-/// The line's nodes with scalars of another kind; one of their scalars, or the arc length, may be perturbed.
+/// The line's nodes with another scalar type. One scalar of a node, or the arc length, may be perturbed.
 template <typename S>
 struct Configuration {
   const SlideLine& line;
   const std::vector<NodePose>& nodes;
-  int perturbed_node = -1, component = 0;  // into line.nodes; 0 to 2: position, 3 to 5: spin
+  int perturbed_node = -1, component = 0;  // index into line.nodes; component 0 to 2: position, 3 to 5: spin
 
   PoseT<S> operator()(int i) const {
     const NodePose& node = nodes[line.nodes[i]];
@@ -44,12 +44,12 @@ struct Configuration {
   }
 };
 
-/// What the forms of the incremental maps differ in.
+/// Differences between the forms of the incremental maps.
 struct ContactRule {
-  double weight = 0.5;        ///< c, of the end of the step in the nodes' weights
-  double arm_weight = 0.5;    ///< where `moves_arm`: of the end in moment arms
-  bool moves_arm = false;     ///< what the arms lack goes into the moments (SM-EM)
-  bool is_in_middle = false;  ///< the contact holds in the middle of the step only
+  double weight = 0.5;        ///< c: weight of the end of the step in the nodes' weights
+  double arm_weight = 0.5;    ///< weight of the end in moment arms, if `moves_arm`
+  bool moves_arm = false;     ///< errors of the arms are added to the moments (SM-EM)
+  bool is_in_middle = false;  ///< the contact holds only in the middle of the step
 };
 
 ContactRule contact_rule(SlideStep step, double arm_weight) {
@@ -70,7 +70,7 @@ ContactRule contact_rule(SlideStep step, double arm_weight) {
   return {arm_weight, arm_weight, true, false};
 }
 
-/// What a step makes of the line, for rows with scalars S.
+/// Data of the line over a step, for rows with scalars S.
 template <typename S>
 struct Step {
   const SlideLine& line;
@@ -80,7 +80,7 @@ struct Step {
   int piece_from, piece_to;
   int first, count;  // active nodes
   ContactRule rule;
-  /// Weight of node j in the contact.
+  /// Weight of a node in the contact.
   S contact(const S& at_begin, const S& at_end) const {
     return S(1 - rule.weight) * at_begin + S(rule.weight) * at_end;
   }
@@ -89,7 +89,7 @@ struct Step {
 template <typename S>
 using NodeRows = Eigen::Matrix<S, 6, 1>;
 
-/// Scratch of one kind of scalar; grows once.
+/// Scratch memory for one scalar type; it grows once.
 template <typename S>
 struct Scratch {
   std::vector<S> begin, end, difference;
@@ -119,7 +119,7 @@ void set_weights(const Step<S>& step, Scratch<S>& scratch) {
     add_weights(step, slide::line_differences(line, step.piece_to, step.from, step.to), S(1), scratch.difference);
     return;
   }
-  // By way of the borders between both elements: each part is free of cancellation.
+  // Split at the borders between both elements, so that each part is free of cancellation.
   const bool forward = step.piece_to > step.piece_from;
   const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
   const S change = step.to - step.from;
@@ -137,7 +137,7 @@ Vector3T<S> increment(const Matrix3T<S>& from, const Matrix3T<S>& to) {
   return cayley::increment(so3::quaternion_from_matrix(Matrix3T<S>(to * from.transpose())));
 }
 
-/// How the section's rotation increment splits: fixed + along * Delta X.
+/// The section's rotation increment, split into fixed + along * Delta X.
 template <typename S>
 struct RotationSplit {
   Vector3T<S> fixed, along;
@@ -150,7 +150,7 @@ RotationSplit<S> split_rotation(const Step<S>& step) {
                     at_01 = frame_at(step.line, step.piece_from, from, step.end).rotation,
                     at_10 = frame_at(step.line, step.piece_to, step.to, step.begin).rotation,
                     at_11 = frame_at(step.line, step.piece_to, step.to, step.end).rotation;
-  // Move, then slide; slide, then move.
+  // Two sequences: 1 moves the nodes, then slides; 2 slides, then moves the nodes.
   const Vector3T<S> a1 = increment(at_00, at_01), b1 = increment(at_01, at_11), b2 = increment(at_00, at_10),
                     a2 = increment(at_10, at_11);
   const SlidePiece& piece = step.line.pieces[step.piece_from];
@@ -174,11 +174,11 @@ RotationSplit<S> split_rotation(const Step<S>& step) {
   return out;
 }
 
-/// Everything that the rows consist of, except g.
+/// All quantities in the rows, except g.
 template <typename S>
 struct IncrementalRows {
   Vector3T<S> travel, turn;         // rho, kappa: the released row is travel . f + turn . m
-  Vector3T<S> arm, redistribution;  // e; delta over the sum of squares
+  Vector3T<S> arm, redistribution;  // e; delta divided by the sum of squares
   Vector3T<S> mean_rotation;
 };
 
@@ -190,7 +190,7 @@ IncrementalRows<S> incremental_rows(const Step<S>& step, Scratch<S>& scratch) {
   IncrementalRows<S> out;
   out.travel.setZero();
   out.mean_rotation.setZero();
-  Vector3T<S> defect = Vector3T<S>::Zero(), interpolated = Vector3T<S>::Zero();  // e / Delta X, sum I_h w
+  Vector3T<S> defect = Vector3T<S>::Zero(), interpolated = Vector3T<S>::Zero();  // e / Delta X, sum of I_h w
   for (int j = 0; j < step.count; ++j) {
     const PoseT<S> begin = step.begin(step.first + j), end = step.end(step.first + j);
     scratch.rotation[j] = cayley::increment(begin.orientation, end.orientation);
@@ -213,7 +213,7 @@ IncrementalRows<S> incremental_rows(const Step<S>& step, Scratch<S>& scratch) {
   return out;
 }
 
-/// The rows for a slave's residual g, into scratch.rows; returns the released one.
+/// Writes the rows for a slave's residual g into scratch.rows, and returns the released row.
 template <typename S>
 S evaluate_incremental(const Step<S>& step, const Vector6& g, Scratch<S>& scratch) {
   const IncrementalRows<S> r = incremental_rows(step, scratch);

@@ -1,12 +1,12 @@
 #pragma once
-/// A slider's rows (joints.md 4.2 to 4.5) and their derivatives by complex steps: the oracle of SlideMaps.
+/// Reference for tests of SlideMaps: a slider's rows (joints.md 4.2 to 4.5) and their derivatives by complex steps.
 
 #include "joints/slide_map.h"
 
 namespace flexarm::test {
 
-/// Rows of the active nodes and the released one, in the order {released, nodes}, and their derivatives with respect to
-/// the arc length at the end and {position, spin} of the active nodes, in columns.
+/// The released row and the rows of the active nodes, in the order {released, nodes}. Columns of the derivatives: the
+/// arc length at the end, and {position, spin} of the active nodes.
 struct SlideRows {
   Eigen::VectorXd rows;
   Eigen::MatrixXd derivatives;

@@ -1,4 +1,4 @@
-// Sections of plain and smooth lines: partition of unity, continuity, derivatives, objectivity.
+// Tests sections of plain and smooth lines: partition of unity, continuity, derivatives, objectivity.
 #include "joints/slide_section.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// A graded line with elements of several orders, bent in space by up to 1 rad per element.
+/// A line of unequal elements of several orders, bent in space by up to 1 rad per element.
 struct BentLine {
   SlideLine line;
   std::vector<PoseT<double>> poses;
@@ -79,7 +79,7 @@ TEST_P(SlideSection, NodesStayWhereTheyAre) {
   }
 }
 
-// The line of the elements jumps; the smooth one does not, neither in its tangent nor in its frame's.
+// At borders, the tangent of a line of elements jumps. On a smooth line, neither the tangent nor the frame jumps.
 TEST_P(SlideSection, TangentsOverBorders) {
   const BentLine bent(GetParam());
   for (int e = 0; e < 3; ++e) {
@@ -97,7 +97,8 @@ TEST_P(SlideSection, TangentsOverBorders) {
   }
 }
 
-// Weighted by lengths, as the derivative of a parabola through three nodes: exact for a line of the second degree.
+// The tangent at a border is the mean weighted by lengths, i.e. the derivative of a parabola through three nodes. It is
+// exact for a line of the second degree.
 TEST(SlideSection, GradedLinesOfTheSecondDegreeHaveExactTangentsAtBorders) {
   SlideLine line;
   line.smooth = true;
@@ -130,7 +131,7 @@ TEST_P(SlideSection, TangentAndCurvatureAreDerivatives) {
         difference_step);
     Vector6 actual;
     actual << section.tangent, section.spatial_curvature;
-    // Elements of 0.3 m: seventh derivatives are large.
+    // The tolerance is larger, because elements of 0.3 m have large seventh derivatives.
     EXPECT_LE((derivative - actual).norm(), 100 * difference_tolerance) << x;
     const FrameVariation frame(bent.line, piece, x, bent);
     EXPECT_LE((frame.spatial_curvature - section.spatial_curvature).norm(), 1e-13);
@@ -166,12 +167,12 @@ TEST_P(SlideSection, FollowsARigidMotion) {
   }
 }
 
-// A frame needs its own element and the neighbours' curvatures only, so lines may roll up.
+// The frame depends only on its own element and the curvatures of the neighbours, so lines may roll up.
 TEST(SlideSection, SmoothLinesMayRollUp) {
   SlideLine line;
   line.smooth = true;
   const int elements = 6;
-  const double turn = 2.5;  // of each element: more than two turns altogether [rad]
+  const double turn = 2.5;  // rotation over each element, more than two turns altogether [rad]
   for (int e = 0; e < elements; ++e) line.pieces.push_back({2 * e, 3, 1.0 * e, e + 1.0});
   const auto poses = [&](int i) {
     const double a = 0.5 * turn * i;

@@ -1,3 +1,4 @@
+// Tests the damping that gives a stop its restitution, against the closed form.
 #include "joints/stop_restitution.h"
 
 #include <cmath>
@@ -7,7 +8,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Of a contact that never pulls, in closed form (docs/notes/stops.md).
+/// Closed form of the restitution of a contact that never pulls (docs/notes/stops.md).
 double restitution(double z) {
   return std::exp(-2 * z * std::acos(z) / std::sqrt(1 - z * z));
 }
@@ -16,7 +17,7 @@ TEST(StopRestitution, IsThatOfTheClosedForm) {
   for (const double e : {0.15, 0.3, 0.5, 0.8, 0.95}) EXPECT_NEAR(restitution(damping_for(e).of_means), e, 1e-9) << e;
 }
 
-// The constants have six digits.
+// The default constants are rounded to six digits.
 TEST(StopRestitution, OfStopsWithoutOneIsThreeTenths) {
   const StopDamping usual, found = damping_for(0.3);
   EXPECT_NEAR(found.of_means, usual.of_means, 1e-6);

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What the shell functions of scripts/common.sh do with a ROS below /opt/ros, and with lines of dependencies.txt."""
+"""Test shell functions of scripts/common.sh: with a ROS in a folder of its own below /opt/ros, and with lines of
+dependencies.txt."""
 
 import os
 import subprocess
@@ -10,7 +11,8 @@ COMMON = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "s
 
 
 def run(commands, **environment):
-    """What is printed by `commands` after common.sh, in an environment of these variables and PATH alone."""
+    """Source common.sh, run `commands`, and return what they print. The environment has only these variables and
+    PATH."""
     result = subprocess.run(
         ["bash", "-c", "set -euo pipefail; source '%s'\n%s" % (COMMON, commands)],
         env={"PATH": "/usr/bin:/bin", **environment},
@@ -32,7 +34,7 @@ class Common(unittest.TestCase):
                 echo "${ROS_DISTRO:-none} ${CMAKE_PREFIX_PATH:-none}" """ % (folder, folder)
             path = "/home/me/devel:%s/noetic" % folder
             self.assertEqual(run(commands, ROS_DISTRO="noetic", CMAKE_PREFIX_PATH=path), ["noetic %s/noetic" % folder])
-            for distribution in "debian", "":  # Debian's own, which lies in /usr, and none
+            for distribution in "debian", "":  # Debian's ROS, which is in /usr; and none
                 self.assertEqual(run(commands, ROS_DISTRO=distribution, CMAKE_PREFIX_PATH=path), ["none none"])
 
     def test_packages_that_do_for_a_line(self):
@@ -53,6 +55,14 @@ class Common(unittest.TestCase):
     def test_one_installed_package_is_enough(self):
         self.assertEqual(run("is_installed no-such-package bash && echo yes"), ["yes"])
         self.assertEqual(run("is_installed no-such-package - || echo no"), ["no"])
+
+    def test_it_is_told_where_the_program_is_missing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            told = "devel=%s; say_what_is_missing 2>&1" % folder
+            self.assertEqual(run(told), ["== scripts/build builds the rest: the program flexarm and the Python module"])
+            os.makedirs(os.path.join(folder, "lib", "flexarm"))
+            os.symlink("/bin/true", os.path.join(folder, "lib", "flexarm", "flexarm"))
+            self.assertEqual(run(told), [])
 
 
 if __name__ == "__main__":

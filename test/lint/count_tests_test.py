@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/count_tests.py counts what passed, failed and was skipped, and fails where it must."""
+"""Test scripts/count_tests.py: it counts passed, failed and skipped tests, and fails when it must."""
 
 import os
 import subprocess
@@ -11,7 +11,7 @@ PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "
 
 
 def program(name, status, completion="Completed", said=""):
-    """An element of ctest's Test.xml, less what is not read of it."""
+    """Return an element of ctest's Test.xml, with only the parts that count_tests.py reads."""
     return (
         '<Test Status="%s"><Name>%s</Name><Results><NamedMeasurement name="Execution Time"><Value>1</Value>'
         '</NamedMeasurement><NamedMeasurement name="Completion Status"><Value>%s</Value></NamedMeasurement>'
@@ -25,7 +25,7 @@ def single(name, inner="", status="run"):
 
 class CountTests(unittest.TestCase):
     def count(self, programs, results=None, file_name="gtest-math.xml"):
-        """(exit status, last line) for what ctest and the gtest `math`, or another runner, reported."""
+        """Return (exit status, last line) for the reports of ctest and of the gtest `math`, or of another runner."""
         status, lines = self.lines(programs, results, file_name)
         return status, lines[-1]
 
@@ -54,7 +54,7 @@ class CountTests(unittest.TestCase):
         name = "_ctest_flexarm_gtest_math"
         ran, broke = program(name, "passed"), program(name, "failed")
         self.assertEqual(self.count([ran], gtest % "".join(tests)), (0, "1 passed, 0 failed, 2 skipped"))
-        # A program that crashed behind its last test has failed, too, and one whose report cannot be read.
+        # A program that crashed after its last test counts as failed, and so does a program with an unreadable report.
         self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
         self.assertEqual(self.count([ran], "<testsuites>"), (1, "0 passed, 1 failed, 0 skipped"))
         tests.append(single("bad", "<failure/>"))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/dependencies.txt and package.xml name the same dependencies."""
+"""Test that scripts/dependencies.txt and package.xml name the same dependencies."""
 
 import os
 import unittest
@@ -17,7 +17,7 @@ DEPENDENCY_TAGS = (
 
 
 def read_list():
-    """Lines `debian-package key...`, where the key `-` stands for what package.xml does not name."""
+    """Return the lines `debian-package key...`. The key `-` marks a package that package.xml does not name."""
     with open(os.path.join(ROOT, "scripts", "dependencies.txt"), encoding="utf-8") as file:
         lines = [line.split("#")[0].split() for line in file]
     return [line for line in lines if line]

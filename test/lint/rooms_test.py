@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Rooms include downwards only, in the order of the table in docs/architecture.md; users need public headers alone."""
+"""Test includes: rooms include only rooms below them, in the order of the table in docs/architecture.md. Users need
+public headers alone."""
 
 import os
 import re
@@ -9,20 +10,21 @@ import unittest
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 SOURCES = (".h", ".cpp")
-# What is outside of the core, as its users are; all may make messages, and step; one node has parts of the other.
+# Folders outside of the core, which use it like any user. All of them may use `pictures`, `messages`, `stepping` and
+# `web`, and one node uses parts of the other node.
 OUTSIDE = ("src/messages", "src/stepping", "src/ros", "src/ros_control", "examples")
-SHARED = ("messages/", "stepping/", "ros/", "ros_control/")
+SHARED = ("pictures/", "messages/", "stepping/", "web/", "ros/", "ros_control/")
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.MULTILINE)
 
 
 def rooms():
-    """From the lowest to the highest."""
+    """Return the names of the rooms from the lowest to the highest."""
     with open(os.path.join(ROOT, "docs", "architecture.md"), encoding="utf-8") as file:
         return re.findall(r"^\| `(\w+)/` \|", file.read(), re.MULTILINE)
 
 
 def files(folder):
-    """Paths from the root of the sources below a folder."""
+    """Yield the paths of the sources below a folder, relative to the root."""
     for path, _, names in os.walk(os.path.join(ROOT, folder)):
         for name in sorted(names):
             if name.endswith(SOURCES):
@@ -30,7 +32,7 @@ def files(folder):
 
 
 def includes(path):
-    """Pairs of '"' or '<' and what is included."""
+    """Return pairs of '"' or '<' and the included name."""
     with open(os.path.join(ROOT, path), encoding="utf-8") as file:
         return INCLUDE.findall(file.read())
 
@@ -53,7 +55,7 @@ class Rooms(unittest.TestCase):
                 for path in files(folder):
                     for bracket, name in includes(path):
                         if bracket == "<":
-                            continue  # of somebody else, as <ros/time.h>
+                            continue  # another project's header, for example <ros/time.h>
                         parts = name.split("/")
                         included = parts[1] if parts[0] == "flexarm" and len(parts) > 2 else parts[0]
                         if len(parts) > 1 and included in above:
@@ -81,7 +83,7 @@ class PublicHeaders(unittest.TestCase):
         self.assertEqual(others, [])
 
     def test_compile_alone(self):
-        """By the compiler and the folders of includes given as arguments."""
+        """Compile each public header alone, with the compiler and include folders that are given as arguments."""
         compiler, *folders = ARGUMENTS
         options = ["-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-x", "c++", "-"]
         for path in files("include"):

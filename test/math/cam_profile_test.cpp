@@ -1,3 +1,4 @@
+/// Tests cam profiles (eccentric discs and periodic tables): derivatives, secants with round-off accuracy, bad tables.
 #include "flexarm/math/cam_profile.h"
 #include "math/pi.h"
 
@@ -16,7 +17,7 @@ CamProfile table() {
 
 class CamProfiles : public ::testing::TestWithParam<CamProfile> {};
 
-/// Central differences of fourth order: their error is below 1e-10 for profiles of order one.
+/// Central difference of fourth order: its error is below 1e-10 for profiles of order one.
 double difference(const std::function<double(double)>& f, double u) {
   const double h = 1e-3;
   return (8 * (f(u + h) - f(u - h)) - (f(u + 2 * h) - f(u - 2 * h))) / (12 * h);
@@ -32,14 +33,14 @@ TEST_P(CamProfiles, DerivativesAndPeriod) {
   }
 }
 
-// secant * change is the travel, to round-off of the travel, at any change and across knots.
+// secant * change equals the travel to within its round-off, for any change and across knots.
 TEST_P(CamProfiles, SecantGivesTheTravel) {
   const CamProfile& profile = GetParam();
   for (double from = -7; from < 7; from += 0.31)
     for (const double change : {2.5, 0.7, 1e-2, 9e-4, 1e-5, 1e-8, 1e-12, -1e-12, -1e-6, -5e-4, -0.3, -3.0}) {
       const double to = from + change, secant = profile.secant(from, to);
       EXPECT_NEAR(secant * (to - from), profile.value(to) - profile.value(from), 4e-16) << from << " " << change;
-      // Symmetric, and the slope in the middle up to the curvature over the change.
+      // The secant is symmetric. It equals the slope in the middle, up to a term of curvature times change squared.
       EXPECT_NEAR(secant, profile.secant(to, from), 1e-12);
       EXPECT_NEAR(secant, profile.derivative(0.5 * (from + to)), 2 * change * change + 1e-11);
     }
@@ -56,7 +57,8 @@ TEST_P(CamProfiles, SecantDerivative) {
   EXPECT_NEAR(profile.secant_derivative(0.7, 0.7), 0.5 * profile.second_derivative(0.7), 1e-15);
 }
 
-// Half the second derivative and a third of its change, up to the square of the change, 1e-10.
+// The derivative of a secant is half the second derivative plus a third of its change, up to the square of the change,
+// 1e-10.
 TEST_P(CamProfiles, SecantDerivativeOverTinyChanges) {
   const CamProfile& profile = GetParam();
   for (double from = -7; from < 7; from += 0.31)
@@ -68,7 +70,7 @@ TEST_P(CamProfiles, SecantDerivativeOverTinyChanges) {
 
 TEST(CamProfile, ShortSecantsOverAKnot) {
   const CamProfile profile = table();
-  const double round_off = 1e-15 / 5e-4;  // of values over the change
+  const double round_off = 1e-15 / 5e-4;  // round-off of values, divided by the change
   for (const double knot : {0.3, 1.0, 2.2, 3.0, 4.4, 5.9})
     for (const double change : {5e-4, -5e-4}) {
       const double from = knot - 0.4 * change, to = from + change;

@@ -1,4 +1,5 @@
-/// Tangent-scaled rotations: what only they have. The common requirements are in rotation_test.cpp.
+/// Tests properties that only tangent-scaled rotations have. The properties of all parametrisations are in
+/// rotation_test.cpp.
 
 #include "math/cayley.h"
 
@@ -47,7 +48,7 @@ TEST(Cayley, CompoundComposesRotations) {
     const Vector w21 = cayley::compound(w2, w1);
     const double tolerance = roundoff * std::max(1.0, std::abs(kappa));
     EXPECT_LT(distance(cayley::rotation(w21), cayley::rotation(w2) * cayley::rotation(w1)), tolerance);
-    // The two one-sided forms.
+    // The two one-sided formulas of the compound.
     const double scaled = tolerance * (1 + w1.squaredNorm()) * (1 + w2.squaredNorm());
     EXPECT_LT(distance(w2 + kappa * cayley::inverse_tangent(w2).transpose() * w1, w21), scaled);
     EXPECT_LT(distance(w1 + kappa * cayley::inverse_tangent(w1) * w2, w21), scaled);
@@ -66,7 +67,7 @@ TEST(Cayley, IncrementBetweenQuaternionsIsSpatial) {
   }
 }
 
-/// Delta(Lambda V) = w x average(Lambda V): what makes the energy-momentum schemes exact.
+/// Delta(Lambda V) = w x average(Lambda V): this identity makes the energy-momentum schemes exact.
 TEST(Cayley, MidStepIdentity) {
   Samples samples;
   for (int i = 0; i < 20; ++i) {
@@ -80,7 +81,7 @@ TEST(Cayley, MidStepIdentity) {
 TEST(Cayley, ScalingDerivative) {
   Samples samples;
   for (const double angle : angles_to_pi()) {
-    const double conditioning = 1 / std::cos(0.5 * angle);  // that of w, which contains 1/q_0
+    const double conditioning = 1 / std::cos(0.5 * angle);  // condition of w, which contains 1/q_0
     for (const Vector& axis : samples.directions()) {
       SCOPED_TRACE(::testing::Message() << "angle " << angle << ", axis " << axis.transpose());
       const Vector theta = angle * axis, w = cayley::from_rotation_vector(theta), d = samples.of_length(1.0);

@@ -1,4 +1,5 @@
-/// Conformal rotation vectors: what only they have. The common requirements are in rotation_test.cpp.
+/// Tests properties that only conformal rotation vectors have. The properties of all parametrisations are in
+/// rotation_test.cpp.
 
 #include "math/conformal.h"
 
@@ -9,7 +10,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Conformal vector by its definition.
+/// Returns the conformal vector by its definition.
 Vector conformal_vector(const Vector& axis, double angle) {
   return 4 * std::tan(0.25 * angle) * axis;
 }
@@ -20,7 +21,7 @@ TEST(Conformal, TangentIsAMultipleOfTheHalfRotation) {
     const Vector axis = samples.of_length(1.0), c = conformal_vector(axis, angle);
     const double scale = std::pow(std::cos(0.25 * angle), 2);
     const Matrix tangent = conformal::tangent(c);
-    // scale = 1 / (1 + c.c/16) has the condition of the tangent in c.
+    // scale = 1 / (1 + c.c/16) depends on c with the same condition as the tangent.
     EXPECT_LT(distance(tangent, scale * power_series(0.5 * angle * axis, 0)),
               roundoff * scale / std::cos(0.25 * angle));
     EXPECT_LT(distance(tangent, cayley::rotation(Vector(0.5 * c)) / (1 + c.squaredNorm() / 16)),
@@ -46,7 +47,7 @@ TEST(Conformal, ShadowIsTheSameRotation) {
     EXPECT_LT((conformal::quaternion(shadow).coeffs() + conformal::quaternion(c).coeffs()).norm(), roundoff);
     EXPECT_NEAR(shadow.norm() * c.norm(), 16, 16 * roundoff);
     EXPECT_LT(distance(conformal::shadow(shadow), c), roundoff * c.norm());
-    // The quaternion gives the shorter of the two. At pi itself both are 4 long.
+    // The quaternion gives the shorter of the two vectors. At exactly pi, both vectors have length 4.
     if (std::abs(angle - pi) < 1e-12) continue;
     EXPECT_LT(distance(conformal::from_quaternion(conformal::quaternion(c)), angle < pi ? c : shadow), 4 * roundoff);
   }
@@ -69,12 +70,12 @@ TEST(Conformal, CompoundSwitchesToTheShadowBeyondPi) {
   for (const double angle2 : angles_to_two_pi()) {
     for (const double angle1 : angles_to_two_pi()) {
       SCOPED_TRACE(::testing::Message() << "angles " << angle2 << " after " << angle1);
-      // The sum of two angles about one axis, brought to the interval from -pi to pi.
+      // The sum of two angles about one axis, reduced to the interval from -pi to pi.
       const double angle = std::remainder(static_cast<double>(angle2) + angle1, 2 * pi);
       const Vector c21 = conformal::compound(conformal_vector(axis, angle2), conformal_vector(axis, angle1));
       EXPECT_LE(c21.norm(), 4 * (1 + roundoff));
       const double tolerance = 2 * roundoff * (1 + angle2 + angle1);  // d(c)/d(angle) is at most 2
-      if (pi - std::abs(angle) < tolerance) continue;                 // either of two opposite vectors
+      if (pi - std::abs(angle) < tolerance) continue;                 // either of two opposite vectors is correct
       EXPECT_LE(distance(c21, conformal_vector(axis, angle)), tolerance);
     }
   }

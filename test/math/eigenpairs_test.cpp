@@ -1,4 +1,4 @@
-// Eigenvalues of dense matrices: by each iteration, and what is said where there are none.
+// Tests eigenvalues of dense matrices by each iteration, and the errors if there are none.
 #include "math/dense_eigenpairs.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 namespace flexarm {
 namespace {
 
-/// Eigenvalues -1 +- 20 i, 3 and -1e4, coupled; `spread`: ratio of the scales of neighbouring coordinates.
+/// Returns a matrix with eigenvalues -1 +- 20 i, 3 and -1e4, coupled. `spread` is the ratio of the scales of
+/// neighbouring coordinates.
 Eigen::MatrixXd general_matrix(double spread) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(4, 4);
   matrix.topLeftCorner(2, 2) << -1, 20, -20, -1;
@@ -32,7 +33,7 @@ TEST(Eigenpairs, OfEachIteration) {
       const Eigenpairs pairs = find(matrix);
       for (int i = 0; i < 4; ++i) {
         const Eigen::VectorXcd vector = pairs.vectors.col(i);
-        // Backward stable: the residual is that of round-off of the matrix, a few operations per row.
+        // The algorithm is backward stable: the residual is round-off of the matrix, a few operations per row.
         EXPECT_LT((matrix * vector - pairs.values[i] * vector).norm(),
                   64 * std::numeric_limits<double>::epsilon() * matrix.norm());
         EXPECT_NEAR(vector.norm(), 1, 1e-12);

@@ -1,3 +1,4 @@
+/// Tests that subnormal numbers are flushed to zero only while a FlushSubnormals object lives.
 #include "math/flush_subnormals.h"
 
 #include <limits>
@@ -8,7 +9,7 @@ namespace flexarm {
 namespace {
 
 double half(double value) {
-  volatile double result = value;  // not at compile time
+  volatile double result = value;  // prevents evaluation at compile time
   result = 0.5 * result;
   return result;
 }

@@ -1,4 +1,4 @@
-// Gramians against the equations that define them, and the bases of invariant subspaces.
+// Tests Gramians against the equations that define them, and bases of invariant subspaces.
 #include "math/gramians.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Poles at -1 +- 20 i, -0.01 +- 3 i, and four real ones between -1e4 and -0.5, coupled.
+/// Returns a matrix with poles at -1 +- 20 i, -0.01 +- 3 i, and four real ones between -1e4 and -0.5, coupled.
 MatrixXd decaying_matrix() {
   MatrixXd matrix = MatrixXd::Zero(8, 8);
   matrix.topLeftCorner(2, 2) << -1, 20, -20, -1;
@@ -30,8 +30,8 @@ TEST(Gramians, SolveTheEquationsOfLyapunov) {
   }
   const GramianRoots roots = gramian_roots(a, b, c);
   const MatrixXd p = roots.reached * roots.reached.transpose(), q = roots.seen.transpose() * roots.seen;
-  // The iteration inverts a matrix whose eigenvalues are 2e4 times nearer to the imaginary axis than the largest is
-  // long.
+  // The iteration inverts a matrix. The smallest real part of its eigenvalues, 0.01, is much smaller than the largest
+  // eigenvalue, 1e4, and the ratio multiplies round-off.
   const double round_off = 1e-15 * 1e4 / 0.01;
   EXPECT_LT((a * p + p * a.transpose() + b * b.transpose()).norm(), round_off * a.norm() * p.norm());
   EXPECT_LT((a.transpose() * q + q * a + c.transpose() * c).norm(), round_off * a.norm() * q.norm());

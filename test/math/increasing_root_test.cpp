@@ -1,3 +1,5 @@
+/// Tests the search for the root of an increasing function: smooth, kinked or with a jump. The last evaluation is at
+/// the root.
 #include "math/increasing_root.h"
 
 #include <cmath>

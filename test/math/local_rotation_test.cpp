@@ -1,4 +1,5 @@
-/// Strain-invariant interpolation of rotations and its generalised shape functions.
+/// Tests the strain-invariant interpolation of rotations and its generalised shape functions, mostly against the
+/// formulas of the theory in long double.
 
 #include "math/local_rotation.h"
 
@@ -10,7 +11,7 @@
 namespace flexarm::test {
 namespace {
 
-/// An interpolated quantity passes through a logarithm, two products and an exponential, each of about 16 roundings.
+/// An interpolated quantity passes through a logarithm, two products and an exponential. Each has about 16 roundings.
 constexpr double interpolation_roundoff = 64 * epsilon;
 
 template <int Nodes>
@@ -18,7 +19,7 @@ using NodalMatrices = std::array<Matrix, Nodes>;
 template <int Nodes>
 using NodalVectors = std::array<Vector, Nodes>;
 
-/// Nodal rotations at most `spread` [rad] away from an arbitrary common one.
+/// Returns nodal rotations that differ by at most `spread` [rad] from an arbitrary common rotation.
 template <int Nodes>
 NodalMatrices<Nodes> nodal_rotations(Samples& samples, double spread) {
   const Matrix common = so3::exp(samples.vector());
@@ -27,7 +28,7 @@ NodalMatrices<Nodes> nodal_rotations(Samples& samples, double spread) {
   return result;
 }
 
-/// The formulas as the theory writes them, with local vectors in the reference frame and in long double.
+/// The formulas in the form of the theory, with local vectors in the reference frame, in long double.
 template <int Nodes>
 struct Reference {
   using V = Vector3T<long double>;
@@ -78,7 +79,7 @@ class LocalRotationTest : public ::testing::Test {
  protected:
   static constexpr int nodes = Count::value;
 
-  /// Calls check(nodal rotations, shape functions at a point) for spreads from nothing to large.
+  /// Calls check(nodal rotations, shape functions at a point) for spreads from zero to large ones.
   template <typename Check>
   void for_each_element(const Check& check) {
     for (const double spread : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.2}) {
@@ -94,7 +95,8 @@ class LocalRotationTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(LocalRotationTest, NodeCounts);
 
-/// Largest sum of |I^i'| over the points used, about 12 for five nodes: what round-off in a nodal rotation becomes.
+/// Returns the largest sum of |I^i'| over the points, about 12 for five nodes: the factor by which round-off in a nodal
+/// rotation grows.
 template <int Nodes>
 double slope_sum(const ShapeFunctions<Nodes>& shape) {
   return 1 + shape.derivatives.cwiseAbs().sum() + shape.values.cwiseAbs().sum();
@@ -124,7 +126,8 @@ TYPED_TEST(LocalRotationTest, AgreesWithTheTheorysFormulas) {
 TEST(HalfWayBetweenTwoNodes, AgreesWithTheTheorysFormulas) {
   Samples samples;
   const ShapeFunctions<2> shape = lagrange<2>(0.0);
-  // Angles between the nodes; near 2 pi theta/sin(theta) grows without bounds, and round-off of theta with it.
+  // Angles between the nodes. Near 2 pi, theta/sin(theta) grows without bounds, and so does the effect of round-off in
+  // theta.
   for (const double angle : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 2.0, 3.0}) {
     const Matrix common = so3::exp(samples.vector());
     const NodalMatrices<2> rotations{common, so3::exp(samples.of_length(angle)) * common};
@@ -145,8 +148,9 @@ TEST(HalfWayBetweenTwoNodes, AgreesWithTheTheorysFormulas) {
   }
 }
 
-// An element bent uniformly to less than 2 pi between neighbouring reference nodes has a uniform curvature, and spins
-// of its nodes move its sections as differences say; beyond pi only the signs of the quaternions tell.
+// An element has a uniform curvature if it is bent uniformly by less than 2 pi between neighbouring reference nodes.
+// Spins of its nodes move its sections as differences show. Beyond pi, only the signs of the quaternions tell the
+// angle.
 TYPED_TEST(LocalRotationTest, BendsThroughPi) {
   constexpr int nodes = TypeParam::value;
   const Vector axis = this->samples_.of_length(1.0);
@@ -171,7 +175,7 @@ TYPED_TEST(LocalRotationTest, BendsThroughPi) {
             changed[i] = so3::exp_quaternion(Vector(h * Vector::Unit(k))) * rotations[i];
             return LocalRotations<nodes>(changed).evaluate(shape.values, shape.derivatives).rotation;
           };
-          // Truncation and round-off of central differences of third order: h^2 and epsilon / h.
+          // Truncation and round-off of central differences: h^2 times the third derivative, and epsilon / h.
           const double h = 1e-5;
           const Matrix difference = (moved(h) - moved(-h)) / (2 * h);
           const Vector spin = so3::vee(Matrix(difference * section.rotation.transpose()));
@@ -204,7 +208,7 @@ TYPED_TEST(LocalRotationTest, CurvatureIsTheRotationsDerivative) {
   this->for_each_element([](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
     const LocalRotations<nodes> local(rotations);
     const InterpolatedRotation<> section = local.evaluate(shape.values, shape.derivatives);
-    // Along the line only the interpolated local vector changes.
+    // Along the line, only the interpolated local vector changes.
     const Vector theta = local.interpolate(shape.values), slope = local.interpolate(shape.derivatives);
     const Matrix rate = derivative(so3::exp(perturbed(theta, slope))) * local.reference_rotation();
     const Matrix skew = section.rotation.transpose() * rate;
@@ -271,8 +275,8 @@ TYPED_TEST(LocalRotationTest, SuperposedRotationChangesNoStrain) {
   });
 }
 
-/// Which of its two quaternions an element's frame has does not matter, which ones its nodes have beside each other
-/// does.
+/// The sign of the quaternion of an element's reference frame does not matter. The signs of its nodes' quaternions
+/// relative to each other do.
 TYPED_TEST(LocalRotationTest, QuaternionsOfEitherSignGiveTheSame) {
   constexpr int nodes = TypeParam::value;
   const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 0.5);
@@ -294,8 +298,8 @@ TYPED_TEST(LocalRotationTest, QuaternionsOfEitherSignGiveTheSame) {
   }
 }
 
-/// A helix, or a roll-up: rotations about one axis fixed in space and in the section. The strains are exact, whatever
-/// the angle between the nodes, up to where the reference nodes are half a turn apart.
+/// A helix or a roll-up: rotations about one axis that is fixed in space and in the section. The strains are exact for
+/// any angle between the nodes, as long as the reference nodes are less than half a turn apart.
 TYPED_TEST(LocalRotationTest, UniformCurvatureIsExact) {
   constexpr int nodes = TypeParam::value;
   const Matrix start = so3::exp(this->samples_.vector());

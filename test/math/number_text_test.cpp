@@ -1,3 +1,4 @@
+/// Tests texts of numbers: they are read back bit for bit, what is refused, and that the locale does not matter.
 #include "math/number_text.h"
 
 #include <clocale>
@@ -66,7 +67,7 @@ TEST(NumberText, TakesNumbersAndNothingElse) {
     EXPECT_FALSE(parse_hexadecimal(text)) << text;
 }
 
-// German's decimal comma, say, where the machine has it.
+// A locale with a decimal comma, for example German, if the machine has one.
 TEST(NumberText, DoesNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
   const char* with_comma = nullptr;

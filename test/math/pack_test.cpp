@@ -1,4 +1,4 @@
-// Packs: lanes go their own ways, and rotations of packs are those of their lanes.
+// Tests packs of numbers (SIMD): lanes are independent, and rotations of packs equal the rotations of their lanes.
 #include "math/pack.h"
 
 #include <limits>
@@ -51,7 +51,8 @@ TEST(Pack, AddLanesTransposes) {
   constexpr int count = 6;
   std::array<Pack, count> values;
   for (int i = 0; i < count; ++i) values[i] = Pack(i, 10 + i, 20 + i, 30 + i);
-  std::array<std::array<double, count + 1>, Pack::kLanes> numbers{};  // one more: nothing is written behind the end
+  // One more, to check that nothing is written behind the end
+  std::array<std::array<double, count + 1>, Pack::kLanes> numbers{};
   std::array<double*, Pack::kLanes> targets;
   for (int lane = 0; lane < Pack::kLanes; ++lane) targets[lane] = numbers[lane].data();
   numbers[1][0] = 100;
@@ -63,7 +64,7 @@ TEST(Pack, AddLanesTransposes) {
   }
 }
 
-/// Angles of all branches of the series, with a small one beside each large one.
+/// Angles for all branches of the series, with a small angle next to each large one.
 constexpr double kAngles[] = {0, 1e-9, 1e-3, 0.3, 0.9999, 1.0001, 1.9999, 2.0001, 2.5, 3.1, 3.14159};
 
 Vector3 axis() {
@@ -99,7 +100,7 @@ TEST(Pack, RotationsAreThoseOfTheLanes) {
         EXPECT_LE((get_lane(quaternion.coeffs(), l) - so3::exp_quaternion(vector).coeffs()).norm(), kRoundOff);
         EXPECT_LE((get_lane(logarithm, l) - vector).norm(), kRoundOff);
         const Quaternion opposite(-so3::exp_quaternion(vector).coeffs());
-        if (vector.norm() > 0.01) {  // else the axis is round-off
+        if (vector.norm() > 0.01) {  // for smaller angles the axis is round-off
           EXPECT_LE((get_lane(unfolded, l) - so3::unfolded_log(opposite)).norm(), 1e2 * kRoundOff) << vector.norm();
         }
       }

@@ -1,5 +1,6 @@
 #pragma once
-/// The four parametrisations of rotations under the same names, for tests that run over all of them. Every function is
+/// Gives the four parametrisations of rotations the same names, for tests that run over all of them. Every function is
+/// generic in the scalar type.
 /// generic in the scalar.
 
 #include <cmath>
@@ -13,20 +14,20 @@
 
 namespace flexarm::test {
 
-/// theta.
+/// The rotation vector theta.
 struct RotationVector {
   static constexpr int components = 3;
   static constexpr double largest_angle = 2 * pi - 1e-3;
-  /// Size of the terms of which operators are made. Theirs are of order one, and cancel towards 2 pi where T is
-  /// singular.
+  /// Size of the terms from which operators are computed. Here they are of order one. Towards 2 pi they cancel, where T
+  /// is singular.
   static constexpr double term_size = 1;
-  /// Relative change of the vector, or of its derivative, per relative error of a quaternion or angle.
+  /// Returns the relative change of the vector, or of its derivative, per relative error of a quaternion or angle.
   static double conversion_condition(double) { return 1; }
-  /// Relative error of T^-1 and its derivatives per relative error of what they are made of: T is singular at 2 pi,
+  /// Returns the relative error of T^-1 and its derivatives per relative error of their terms. T is singular at 2 pi,
   /// and b contains 1/a_1 = theta^2 / (2 sin^2(theta/2)), where the sine has an absolute error.
   static double inverse_condition(double angle) { return angle < pi ? 1 : 1 / std::sin(0.5 * angle); }
 
-  /// Coordinates of a rotation about a unit axis.
+  /// Returns the coordinates of a rotation about a unit axis.
   template <typename S>
   static Vector3T<S> make(const Vector3T<S>& axis, S angle) {
     return angle * axis;
@@ -50,13 +51,13 @@ struct RotationVector {
   static constexpr auto xi_inverse_tangent = [](const auto& v, const auto& a) { return so3::xi_inverse_tangent(v, a); };
 };
 
-/// w = 2 tan(theta/2) e.
+/// The tangent-scaled vector w = 2 tan(theta/2) e.
 struct TangentScaled {
   static constexpr int components = 3;
   static constexpr double largest_angle = pi - 1e-9;
   /// No terms cancel.
   static constexpr double term_size = 0;
-  /// w = 2 q_v/q_0, and q_0 = cos(theta/2) has an absolute error.
+  /// The vector is w = 2 q_v/q_0, and q_0 = cos(theta/2) has an absolute error.
   static double conversion_condition(double angle) { return 1 / std::cos(0.5 * angle); }
   static double inverse_condition(double) { return 1; }
 
@@ -87,7 +88,7 @@ struct TangentScaled {
   };
 };
 
-/// c = 4 tan(theta/4) e.
+/// The conformal vector c = 4 tan(theta/4) e.
 struct Conformal {
   static constexpr int components = 3;
   static constexpr double largest_angle = 2 * pi - 1e-3;
@@ -124,7 +125,7 @@ struct Conformal {
   };
 };
 
-/// q = (cos(theta/2), sin(theta/2) e).
+/// The unit quaternion q = (cos(theta/2), sin(theta/2) e).
 struct UnitQuaternion {
   static constexpr int components = 4;
   static constexpr double largest_angle = 2 * pi - 1e-3;
@@ -143,7 +144,7 @@ struct UnitQuaternion {
     return unit_quaternion::from_rotation_vector(theta);
   };
   static constexpr auto to_rotation_vector = [](const auto& v) { return unit_quaternion::to_rotation_vector(v); };
-  /// q and -q being the same rotation, that with q_0 >= 0, as the others have it.
+  /// q and -q are the same rotation. The quaternion with q_0 >= 0 is returned, as by the other parametrisations.
   static constexpr auto from_quaternion = [](const auto& q) {
     using S = typename std::decay_t<decltype(q)>::Scalar;
     return unit_quaternion::Vector4T<S>(S(std::real(q.w()) < 0 ? -1 : 1) * unit_quaternion::from_quaternion(q));

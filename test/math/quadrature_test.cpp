@@ -1,4 +1,4 @@
-/// Gauss-Legendre rules: degree of exactness, for every number of points.
+/// Tests the degree of exactness of Gauss-Legendre rules, for every number of points.
 
 #include "math/quadrature.h"
 
@@ -11,7 +11,8 @@
 namespace flexarm {
 namespace {
 
-// Weights add up to 2; each term carries a few roundings, the abscissa's own times the degree (9 at most).
+// The weights add up to 2. Each term has a few roundings: the rounding of the abscissa counts as many times as the
+// degree (9 at most).
 constexpr double quadrature_roundoff = 16 * std::numeric_limits<double>::epsilon();
 
 template <int Points>
@@ -45,8 +46,8 @@ TYPED_TEST(GaussLegendreTest, IsExactToDegreeTwiceThePointsMinusOne) {
 
 TYPED_TEST(GaussLegendreTest, MissesTheNextDegreeByTheKnownRemainder) {
   constexpr int n = TypeParam::value;
-  // The monic Legendre polynomial squared integrates to 2^(2n+1) n!^4 / ((2n+1) (2n)!^2), and the rule gives zero for
-  // it.
+  // The square of the monic Legendre polynomial has the integral 2^(2n+1) n!^4 / ((2n+1) (2n)!^2), for which the rule
+  // gives zero.
   const double factorial = std::tgamma(n + 1.0), factorial2 = std::tgamma(2 * n + 1.0);
   const double remainder = std::pow(2.0, 2 * n + 1) * std::pow(factorial, 4) / ((2 * n + 1) * factorial2 * factorial2);
   EXPECT_NEAR(exact_integral_of_power(2 * n) - integral_of_power<n>(2 * n), remainder, quadrature_roundoff);

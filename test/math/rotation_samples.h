@@ -1,5 +1,5 @@
 #pragma once
-/// Samples, oracles and measures shared by the tests of rotations.
+/// Random samples, reference solutions and error measures for the tests of rotations.
 
 #include <complex>
 #include <limits>
@@ -19,15 +19,16 @@ using ComplexVector = Vector3T<Complex>;
 using ComplexMatrix = Matrix3T<Complex>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Entries of the operators are sums of a handful of products: 16 roundings bound them, relative to the largest entry.
+/// Entries of the operators are sums of a handful of products. 16 roundings, relative to the largest entry, bound their
+/// error.
 constexpr double roundoff = 16 * epsilon;
 constexpr double pi = 3.14159265358979323846;
 constexpr long double long_pi = 3.141592653589793238462643383279502884L;
 
-/// Step of a complex step: small enough that its square vanishes against anything.
+/// Complex step: so small that its square vanishes compared with any number.
 constexpr double complex_step = 1e-40;
 
-/// Angles from nothing through pi, dense about the switches of method (0.49, 1, 2, 2 pi / 3).
+/// Angles from zero to pi, dense near the switches of method (0.49, 1, 2, 2 pi / 3).
 inline std::vector<double> angles_to_pi() {
   return {0.0,   1e-12, 1e-9, 1e-6,   1e-4,   1e-3, 0.01, 0.1, 0.3, 0.48, 0.489,     0.49,      0.5,      0.7,
           0.999, 1.001, 1.5,  1.9999, 2.0001, 2.09, 2.1,  2.5, 3.0, 3.1,  pi - 1e-3, pi - 1e-7, pi - 1e-9};
@@ -40,7 +41,7 @@ inline std::vector<double> angles_to_two_pi() {
   return angles;
 }
 
-/// Reproducible random vectors.
+/// Makes reproducible random vectors.
 class Samples {
  public:
   Vector vector() { return {normal_(engine_), normal_(engine_), normal_(engine_)}; }
@@ -49,7 +50,7 @@ class Samples {
   Eigen::Matrix<double, Components, 1> direction() {
     return Eigen::Matrix<double, Components, 1>::NullaryExpr([this] { return normal_(engine_); }).normalized();
   }
-  /// Directions in which pivots are chosen differently: axes, a coordinate plane, general ones.
+  /// Returns directions for which different pivots are chosen: axes, a coordinate plane, general ones.
   std::vector<Vector> directions() {
     return {Vector::UnitX(), -Vector::UnitY(), Vector::UnitZ(), Vector(1, -1, 0).normalized(),
             of_length(1.0),  of_length(1.0),   of_length(1.0)};
@@ -60,7 +61,8 @@ class Samples {
   std::normal_distribution<double> normal_;
 };
 
-/// sum_n hat(theta)^n / (n + shift)! in long double: exp for shift 0, T for shift 1. No coefficient of so3.h is used.
+/// Returns sum_n hat(theta)^n / (n + shift)! in long double: exp for shift 0, T for shift 1. Uses no coefficient of
+/// so3.h.
 template <typename V>
 LongMatrix power_series(const Eigen::MatrixBase<V>& theta, int shift) {
   const LongMatrix skew = so3::hat(theta.template cast<long double>());
@@ -78,18 +80,18 @@ Eigen::Matrix<Complex, Components, 1> perturbed(const Eigen::Matrix<double, Comp
   return x.template cast<Complex>() + Complex(0, complex_step) * direction.template cast<Complex>();
 }
 
-/// Rotation matrix perturbed by a spatial spin.
+/// Returns a rotation matrix perturbed by a spatial spin.
 inline ComplexMatrix spun(const Matrix& rotation, const Vector& spin) {
   return rotation.cast<Complex>() + Complex(0, complex_step) * Matrix(so3::hat(spin) * rotation).cast<Complex>();
 }
 
-/// Derivative held in the imaginary part.
+/// Returns the derivative, which is stored in the imaginary part.
 template <int Rows, int Columns>
 Eigen::Matrix<double, Rows, Columns> derivative(const Eigen::Matrix<Complex, Rows, Columns>& value) {
   return value.imag() / complex_step;
 }
 
-/// Largest absolute difference of two matrices of any real scalars.
+/// Returns the largest absolute difference of two matrices of any real scalars.
 template <typename A, typename B>
 double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return static_cast<double>((a.template cast<long double>() - b.template cast<long double>()).cwiseAbs().maxCoeff());

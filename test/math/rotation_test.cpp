@@ -1,4 +1,4 @@
-/// What every parametrisation of rotations must satisfy, whatever its vector means.
+/// Tests properties that every parametrisation of rotations must have.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ class RotationTest : public ::testing::Test {
   static constexpr int components = Parametrisation::components;
   using Coordinates = Eigen::Matrix<double, components, 1>;
 
-  /// Calls check(v, angle, axis) over angles and axes; v is that of the given angle and axis, rounded.
+  /// Calls check(v, angle, axis) for many angles and axes. v is the rounded vector of this angle and axis.
   template <typename Check>
   void for_each_vector(const Check& check) {
     for (const double angle : angles_to_two_pi()) {
@@ -25,7 +25,7 @@ class RotationTest : public ::testing::Test {
     }
   }
 
-  /// Calls check(v2, angle2, v1, angle1) over pairs of rotations about unrelated axes.
+  /// Calls check(v2, angle2, v1, angle1) for pairs of rotations about unrelated axes.
   template <typename Check>
   void for_each_pair(const Check& check) {
     const std::vector<double> angles = {0.0, 1e-9, 1e-3, 1.0, 2.5, pi - 1e-3, pi - 1e-9, pi, 4.0, 2 * pi - 1e-3};
@@ -53,7 +53,7 @@ TYPED_TEST_SUITE(RotationTest, Parametrisations);
 TYPED_TEST(RotationTest, RotationAndQuaternionAgreeWithThePowerSeries) {
   this->for_each_vector([](const auto& v, double angle, const Vector& axis) {
     const LongMatrix expected = power_series(angle * axis, 0);
-    // The vector is rounded: its relative error turns the matrix by up to as much of the angle.
+    // The vector is rounded: its relative error, times the angle, is an error of the matrix.
     const double tolerance = roundoff * std::max(1.0, angle);
     EXPECT_LT(distance(TypeParam::rotation(v), expected), tolerance);
     const QuaternionT<double> q = TypeParam::quaternion(v);
@@ -67,7 +67,7 @@ TYPED_TEST(RotationTest, ConversionsAgreeWithTheDefinition) {
     const Vector theta = angle * axis;
     const double tolerance = roundoff * std::max(v.norm(), angle) * TypeParam::conversion_condition(angle);
     EXPECT_LE(distance(TypeParam::from_rotation_vector(theta), v), tolerance);
-    // A quaternion does not tell theta from theta - 2 pi.
+    // A quaternion does not distinguish theta from theta - 2 pi.
     const bool is_shorter = TypeParam::components == 4 && angle > pi;
     const Vector expected = is_shorter ? Vector((angle - 2 * pi) * axis) : theta;
     EXPECT_LE(distance(TypeParam::to_rotation_vector(v), expected), roundoff * angle);
@@ -115,7 +115,7 @@ TYPED_TEST(RotationTest, IdentitiesOfTheTangent) {
     const double tolerance = roundoff * size(tangent) * size(inverse) * TypeParam::inverse_condition(angle);
     EXPECT_LT(distance(tangent * inverse, identity), tolerance);
     if constexpr (TypeParam::components == 3) {
-      // Lambda is rounded in its angle.
+      // The angle of Lambda is rounded.
       const double turn = std::max(1.0, angle);
       EXPECT_LT(distance(tangent * inverse.transpose(), rotation), tolerance * turn);
       EXPECT_LT(distance(rotation * tangent.transpose(), tangent), roundoff * size(tangent) * turn);
@@ -148,7 +148,8 @@ TYPED_TEST(RotationTest, DerivativesOfTheTangents) {
   });
 }
 
-/// The operator's value in double against that in long double for the same arguments: nothing but round-off.
+/// Compares the value of each operator in double with its value in long double for the same arguments: they differ only
+/// by round-off.
 TYPED_TEST(RotationTest, OperatorsAgreeWithLongDouble) {
   this->for_each_vector([this](const auto& v, double angle, const Vector&) {
     const auto d = this->samples_.template direction<TypeParam::components>();
@@ -176,7 +177,7 @@ TYPED_TEST(RotationTest, OperatorsAgreeWithLongDouble) {
 
 TYPED_TEST(RotationTest, CompoundComposesRotations) {
   this->for_each_pair([](const auto& v2, double angle2, const auto& v1, double angle1) {
-    // However large the compound vector, it is the quotient of quaternion components with errors of some epsilon.
+    // Even if the compound vector is large, it is a quotient of quaternion components with errors of some epsilon.
     EXPECT_LT(
         distance(TypeParam::rotation(TypeParam::compound(v2, v1)), TypeParam::rotation(v2) * TypeParam::rotation(v1)),
         roundoff * std::max(1.0, angle2 + angle1));
@@ -185,14 +186,14 @@ TYPED_TEST(RotationTest, CompoundComposesRotations) {
 
 TYPED_TEST(RotationTest, CompoundCarriesTheSpin) {
   this->for_each_pair([this](const auto& v2, double angle2, const auto& v1, double) {
-    // d(Lambda_2 Lambda_1) has the spin of d(Lambda_2) if Lambda_1 rests.
+    // d(Lambda_2 Lambda_1) has the spin of d(Lambda_2) if Lambda_1 is constant.
     const auto d = this->samples_.template direction<TypeParam::components>();
     const auto rate = derivative(TypeParam::compound(perturbed(v2, d), v1.template cast<Complex>().eval()));
     const auto v21 = TypeParam::compound(v2, v1);
     const auto tangent = TypeParam::tangent(v21);
     const QuaternionT<double> q = TypeParam::quaternion(v21);
     const double angle21 = 2 * std::atan2(q.vec().norm(), std::abs(q.w()));
-    // Towards the singular angle the rate is the small difference of terms that are larger by the condition.
+    // Towards the singular angle, the rate is a small difference of terms that are larger by the condition number.
     const double condition = TypeParam::conversion_condition(angle21) * TypeParam::conversion_condition(angle2);
     const double scale = std::max(size(tangent) * size(rate), TypeParam::term_size);
     EXPECT_LE(distance(tangent * rate, TypeParam::tangent(v2) * d), 4 * roundoff * scale * condition);

@@ -1,4 +1,4 @@
-/// Lagrange shape functions: the defining properties, for every node count.
+/// Tests the properties that define Lagrange shape functions, for every number of nodes.
 
 #include "math/shape_functions.h"
 #include "math/quadrature.h"
@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-// Sums of at most five products of at most four factors, each below 11 in magnitude.
+// Round-off of sums of at most five products, each of at most four factors below 11 in magnitude.
 constexpr double shape_roundoff = 200 * std::numeric_limits<double>::epsilon();
 
 template <typename Count>
@@ -21,7 +21,7 @@ class ShapeFunctionsTest : public ::testing::Test {};
 
 TYPED_TEST_SUITE(ShapeFunctionsTest, test::NodeCounts);
 
-// The nodal polynomial is orthogonal to all polynomials of degree nodes - 3, which defines the Gauss-Lobatto points.
+// The nodal polynomial is orthogonal to all polynomials of degree nodes - 3. This defines the Gauss-Lobatto points.
 TYPED_TEST(ShapeFunctionsTest, NodesAreTheGaussLobattoPoints) {
   constexpr int nodes = TypeParam::value;
   EXPECT_EQ(node_coordinate<nodes>(0), -1.0);

@@ -1,4 +1,5 @@
-/// Rotation vectors: coefficients, logarithm through pi, and the operators that only they have.
+/// Tests rotation vectors: coefficients, the logarithm through pi, and operators that other parametrisations do not
+/// have.
 
 #include "math/so3.h"
 
@@ -11,7 +12,7 @@
 namespace flexarm::test {
 namespace {
 
-/// a_k from its definition in long double. Terms reach (2 pi)^6/7! = 12, which limits the sum.
+/// Returns a_k by its definition in long double. Terms reach (2 pi)^6/7! = 12, which limits the accuracy of the sum.
 constexpr double series_error = 1e-18;
 long double series(int k, long double x) {
   long double term = 1, sum = 0;
@@ -23,7 +24,7 @@ long double series(int k, long double x) {
   return sum;
 }
 
-/// Running error bound of the recurrences, four roundings for each evaluation and what is carried over.
+/// Returns a running error bound of the recurrences: four roundings for each evaluation plus the propagated error.
 template <int kmax>
 std::array<double, kmax + 1> error_bounds(double x) {
   std::array<double, kmax + 1> bound;
@@ -75,7 +76,7 @@ TEST(SeriesCoefficients, RatesFollowTheFamily) {
   for (const double x : {1e-4, 0.5, 1.7, 3.9, 4.1, 9.0, 30.0}) {
     const std::array<double, 7> a = so3::series_coefficients<6>(x);
     const std::array<Complex, 7> moved = so3::series_coefficients<6>(Complex(x, complex_step));
-    // d/dx = (1/2 theta) d/d(theta).
+    // d/dx = 1/(2 theta) d/d(theta), with x = theta^2.
     for (int k = 0; k <= 4; ++k) {
       EXPECT_NEAR(moved[k].imag() / complex_step, 0.5 * ((k + 1) * a[k + 2] - a[k + 1]), roundoff);
     }
@@ -109,7 +110,7 @@ TEST(So3, LogarithmIsAccurateFromZeroThroughPi) {
     for (const Vector& axis : samples.directions()) {
       SCOPED_TRACE(::testing::Message() << "angle " << angle << ", axis " << axis.transpose());
       const Vector theta = angle * axis;
-      // The quaternion in long double, so that only the logarithm is judged.
+      // The quaternion is computed in long double, so that only the logarithm is judged.
       const QuaternionT<double> q = so3::exp_quaternion(theta.cast<long double>()).cast<double>();
       EXPECT_LE(distance(so3::log(q), theta), 4 * epsilon * angle);
       EXPECT_LE(distance(so3::log(so3::exp(theta)), theta), roundoff * angle);
@@ -125,7 +126,7 @@ TEST(So3, UnfoldedLogarithmIsAccurateFromZeroToTwoPi) {
     for (const Vector& axis : samples.directions()) {
       const Vector theta = angle * axis;
       const QuaternionT<double> q = so3::exp_quaternion(theta.cast<long double>()).cast<double>();
-      // The axis is q_v over its norm, which falls towards 2 pi.
+      // The axis is q_v divided by its norm, which falls towards 2 pi.
       const double condition = angle < pi ? 1 : 1 / std::sin(0.5 * angle);
       EXPECT_LE(distance(so3::unfolded_log(q), theta), 4 * epsilon * angle * condition) << "angle " << angle;
       EXPECT_LE(distance(so3::unfolded_log(QuaternionT<double>(3 * q.w(), 3 * q.x(), 3 * q.y(), 3 * q.z())), theta),
@@ -133,8 +134,8 @@ TEST(So3, UnfoldedLogarithmIsAccurateFromZeroToTwoPi) {
     }
 }
 
-/// Angles on both sides of pi, exact in long double: rounding the matrix or quaternion to double is all that is lost.
-/// As the four components determine the rotation with condition one, the bound does not grow towards pi.
+/// Angles on both sides of pi are exact in long double, so that only the rounding of the matrix or quaternion to double
+/// remains. The four components determine the rotation with condition one, so the bound does not grow towards pi.
 TEST(So3, ExtractionIsAccurateOnBothSidesOfPi) {
   Samples samples;
   std::vector<Vector> axes = samples.directions();
@@ -148,7 +149,7 @@ TEST(So3, ExtractionIsAccurateOnBothSidesOfPi) {
         const long double beyond = side * std::pow(10.0L, -exponent), angle = long_pi + beyond;
         const LongMatrix exact = power_series(angle * axis, 0);
         const Matrix rotation = exact.cast<double>();
-        // The representative with q0 >= 0 and the rotation vector of at most pi.
+        // The quaternion with q0 >= 0 and the rotation vector of length at most pi.
         const long double sine = std::cos(0.5L * beyond), cosine = std::sin(0.5L * std::abs(beyond));
         const QuaternionT<double> q = so3::quaternion_from_matrix(rotation);
         EXPECT_LE(std::abs(static_cast<double>(q.w() - cosine)), roundoff);
@@ -200,7 +201,7 @@ TEST(So3, LongRotationVectorsAreThoseOfTheirRemainder) {
   }
 }
 
-/// Calls check(theta) over angles below 2 pi and directions.
+/// Calls check(theta) for angles below 2 pi and many directions.
 template <typename Check>
 void for_each_rotation_vector(const Check& check) {
   Samples samples;
@@ -218,7 +219,7 @@ TEST(So3, TangentAgreesWithThePowerSeries) {
     const LongMatrix inverse = tangent.inverse();
     EXPECT_LT(distance(so3::tangent(theta), tangent), roundoff);
     EXPECT_NEAR(so3::tangent(theta).determinant(), 2 * so3::series_coefficients<1>(theta.squaredNorm())[1], roundoff);
-    // T^-1 contains 1/a_1, a_1 = 2 sin^2(theta/2)/theta^2, which round-off in theta turns near 2 pi.
+    // T^-1 contains 1/a_1, a_1 = 2 sin^2(theta/2)/theta^2. Near 2 pi, round-off in theta is magnified there.
     const double conditioning = theta.norm() < pi ? 1 : 1 / std::pow(std::sin(0.5 * theta.norm()), 2);
     EXPECT_LT(distance(so3::inverse_tangent(theta), inverse), roundoff * conditioning);
   });
@@ -245,7 +246,7 @@ TEST(So3, IdentitiesOfTheDerivatives) {
     const Vector d = samples.of_length(1.0), material = samples.of_length(1.0), force = samples.of_length(1.0);
     const Matrix rotation = so3::exp(theta), tangent = so3::tangent(theta);
     const Vector spatial = rotation * material;
-    const double tolerance = roundoff * std::max(1.0, theta.norm());  // the rotation is rounded in its angle
+    const double tolerance = roundoff * std::max(1.0, theta.norm());  // the angle of the rotation is rounded
     EXPECT_LT(distance(so3::tangent_derivative(theta, d).transpose() * spatial,
                        so3::xi_tangent(theta, material).transpose() * d),
               tolerance);

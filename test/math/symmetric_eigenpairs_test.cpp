@@ -1,4 +1,4 @@
-// Eigenvalues and exponentials of matrices whose entries are of very different sizes.
+// Tests eigenvalues and exponentials of matrices whose entries have very different sizes.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Of size 1 with 1/2 beside the diagonal, scaled: 1e10, 1 and 1e-10.
+/// Returns a matrix of ones on the diagonal and 1/2 elsewhere, with coordinates scaled by 1e10, 1 and 1e-10.
 MatrixXd graded() {
   const Eigen::Vector3d scales(1e10, 1, 1e-10);
   MatrixXd matrix = MatrixXd::Constant(3, 3, 0.5);
@@ -19,8 +19,8 @@ MatrixXd graded() {
   return scales.asDiagonal() * matrix * scales.asDiagonal();
 }
 
-// Minors of the unscaled matrix are 1, 3/4 and 1/2: eigenvalues are their ratios times the squares of the scales, but
-// for parts of 1e-20.
+// The leading minors of the unscaled matrix are 1, 3/4 and 1/2. The eigenvalues are the ratios of successive minors
+// times the squares of the scales, to within 1e-20.
 TEST(Diagonalise, SmallEigenvaluesKeepTheirDigits) {
   MatrixXd matrix = graded(), vectors = MatrixXd::Identity(3, 3);
   diagonalise(matrix, vectors);
@@ -50,7 +50,7 @@ TEST(MatrixExponential, OfARotation) {
   }
 }
 
-// exp(A) would have lost what is small beside 1 in the first squarings.
+// A computation of exp(A) would lose digits that are small beside 1 in the first squarings.
 TEST(MatrixExponential, SlowOnesKeepTheirDigitsBesideFastOnes) {
   const MatrixXd rates = Eigen::Vector3d(-1e13, -1, -1e-12).asDiagonal();
   const MatrixXd change = matrix_exponential_less_identity(rates);

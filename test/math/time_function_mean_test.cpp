@@ -1,4 +1,4 @@
-/// Means of functions of time over intervals, and their corners, against closed forms.
+/// Tests means of functions of time over intervals, and the corners of these functions, against closed forms.
 #include "flexarm/math/time_function.h"
 
 #include <gtest/gtest.h>
@@ -17,16 +17,16 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A function and its integral from 0 on.
+/// A function and its integral from 0 to t.
 struct Case {
   std::string text;
   std::function<double(double)> integral;
-  double largest;  // absolute value
+  double largest;  // largest absolute value
 };
 
 std::vector<Case> cases() {
   const auto ramp = [](double t) { return std::pow(std::max(t, 0.0), 2) / 2; };
-  const auto wave = [](double t) {  // of |sin|, from 0 on
+  const auto wave = [](double t) {  // integral of |sin| from 0
     const double whole = std::floor(t / M_PI);
     return 2 * whole + 1 - std::cos(t - M_PI * whole);
   };
@@ -63,7 +63,7 @@ TEST(TimeFunctionMean, IsThatOfClosedForms) {
       for (const double width : {1e-4, 1e-3, 1.7e-3, 0.05, 0.9}) {
         const double end = begin + width;
         const double mean = (example.integral(end) - example.integral(begin)) / width;
-        // The closed forms subtract numbers of the size of the largest integral, and times are rounded.
+        // The closed forms subtract numbers as large as the largest integral, and times are rounded.
         const double tolerance = example.largest * (2e-13 + 32 * kEpsilon / width);
         EXPECT_NEAR(function.mean(begin, end), mean, tolerance) << example.text << " from " << begin << " to " << end;
         EXPECT_EQ(function.mean(end, begin), function.mean(begin, end)) << example.text;
@@ -79,7 +79,7 @@ TEST(TimeFunctionMean, OfTheOutsideIsTheEnd) {
   EXPECT_NEAR(TimeFunction::parse("0:0 1:1").mean(-1, 3), 2.5 / 4, 4 * kEpsilon);
 }
 
-/// Mean from `begin` to `end` of what is left of a function between -limit and limit, times end - begin.
+/// A function that is cut at -limit and limit: `integral` is its mean from `begin` to `end` times (end - begin).
 struct CutCase {
   std::string text;
   double limit, begin, end, integral;
@@ -90,7 +90,7 @@ TEST(TimeFunctionMean, WithinALimitIsThatOfWhatIsCutAtEachInstant) {
   for (const CutCase& c :
        {CutCase{"7", 3, 0, 2, 6}, CutCase{"-7", 3, 0, 2, -6}, CutCase{"7", 8, 0, 2, 14},
         CutCase{"0:0 1:4", 2, 0, 1, 1.5}, CutCase{"0:0 1:4", 5, 0, 1, 2},
-        // From -1.5 on: -1 up to 1/3, through 0 up to 2/3, then 1.
+        // The second of these functions, from -1.5 on: -1 up to 1/3, through 0 up to 2/3, then 1.
         CutCase{"0:-3 1:3", 1, 0.25, 1, -(third - 0.25) + third}, CutCase{"0:-3 1:3", 1, 0, 1, 0},
         // A triangle to 4 and back, then -5: its top is cut from 1/2 to 3/2.
         CutCase{"0:0 1:4 2:0 3:-5", 2, 0, 2, 0.5 + 2 + 0.5}, CutCase{"0:0 1:4 2:0 3:-5", 2, 2, 4, -0.4 - 0.6 * 2 - 2},
@@ -130,7 +130,7 @@ TEST(TimeFunctionMean, IsNotFiniteWhereValuesAreNot) {
   EXPECT_FALSE(std::isfinite(TimeFunction::parse("t > 0.25 ? 1/0 : 1").mean(0.2, 0.3)));
 }
 
-/// Values that a mean takes.
+/// Returns the number of values that a mean evaluates.
 int values_of(const std::function<double(double)>& function, double begin, double end) {
   int count = 0;
   adaptive_mean([&](double t) { return ++count, function(t); }, begin, end);
@@ -158,7 +158,7 @@ TEST(TimeFunctionMean, IsCheaperWhereItMayBeSmooth) {
   }
 }
 
-// One that is wider than a third of the interval, wherever it is.
+// A pulse wider than a third of the interval is found wherever it is.
 TEST(TimeFunctionMean, MissesNoPulseBetweenItsValues) {
   for (double begin = 0; begin < 0.63; begin += 0.01) {
     const double end = begin + 0.36;
@@ -214,14 +214,14 @@ TEST(TimeFunctionCorners, AreFoundByBranches) {
   expect_corners("max(1-t,2*t,1.5)", {0.75});
   expect_corners("rint(2*t)", {0.25, 0.75, 1.25, 1.75});
   expect_corners("rint(2*t)", {-1.25, -0.75, -0.25}, -1.5, 0);
-  // Nearly touching: pairs closer to each other than times at which the search looks.
+  // Nearly touching: pairs that are closer to each other than the times at which the search evaluates.
   const double apart = std::acos(0.999999999) / 10;
   expect_corners("sin(10*t) > 0.999999999", {M_PI / 20 - apart, M_PI / 20 + apart}, 0, 0.5, 1e-7);
   expect_corners("sin(10*t) > 0.999999999", {M_PI / 20 - apart, M_PI / 20 + apart}, 0, 0.5, 1e-7);
 }
 
 TEST(TimeFunctionCorners, AreFoundWithoutBranches) {
-  expect_corners("acos(cos(3*t))", {M_PI / 3}, 0, 2, std::sqrt(8 * kEpsilon) / 3);  // as a cosine near -1 is rounded
+  expect_corners("acos(cos(3*t))", {M_PI / 3}, 0, 2, std::sqrt(8 * kEpsilon) / 3);  // a cosine near -1 is rounded
   expect_corners("sqrt((t-0.7123)^2)", {0.7123}, 0, 2, 1e-9);
   expect_corners("atan2(sin(3*t),cos(3*t))", {M_PI / 3}, 0, 2, 1e-12);
 }

@@ -1,3 +1,5 @@
+/// Tests functions of time: constants, expressions, tables and splines that are read from text, their derivatives, and
+/// the errors of bad texts.
 #include "flexarm/math/time_function.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +17,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// The message of the error that parsing `text` throws; empty if it throws none.
+/// Returns the message of the error that parsing `text` throws, or an empty text if it throws none.
 std::string parse_error(const std::string& text) {
   try {
     TimeFunction::parse(text);
@@ -30,7 +32,7 @@ void expect_error(const std::string& text, const std::string& fragment) {
   EXPECT_NE(message.find(fragment), std::string::npos) << "'" << text << "' gave: " << message;
 }
 
-/// A decimal comma, as many European locales have it.
+/// A locale with a decimal comma, as many European locales have it.
 struct DecimalComma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
@@ -69,7 +71,7 @@ TEST(TimeFunction, ReadsTables) {
 }
 
 TEST(TimeFunction, ReadsTablesWithRates) {
-  // Cubic between its points, and so t^3 itself.
+  // The function is cubic between its points, so it reproduces t^3.
   const TimeFunction cube = TimeFunction::parse("-1:-1:3 0:0:0\n 2:8:12");
   for (const double t : {-1.0, -0.7, 0.0, 0.3, 1.9, 2.0}) {
     EXPECT_NEAR(cube(t), t * t * t, 8 * kEpsilon * 8) << t;
@@ -83,7 +85,7 @@ TEST(TimeFunction, ReadsTablesWithRates) {
 
 namespace {
 
-/// The spline through points of sin^2, which rests at 0 and pi, with its rates or without.
+/// Returns the spline through points of sin^2, which rests at 0 and pi, with or without given rates.
 TimeFunction spline_of_squared_sine(int pieces, bool with_rates) {
   std::vector<double> times, values, rates;
   for (int i = 0; i <= pieces; ++i) {
@@ -116,7 +118,7 @@ TEST(TimeFunction, SplinesWithoutRatesAreSmoothAndRestAtTheirEnds) {
   const TimeFunction spline = TimeFunction::spline(times, {1, 3, -2, 0, 5});
   EXPECT_EQ(spline.derivative(0.5), 0);
   EXPECT_EQ(spline.derivative(4), 0);
-  const double h = 1e-3;  // the rate is quadratic in a piece: the differences of second order are exact
+  const double h = 1e-3;  // the rate is quadratic in a piece, for which these differences of second order are exact
   for (const double t : {0.6, 1.5, 1.8}) {
     const auto rate = [&](int i) { return spline.derivative(t + i * h); };
     const double before = (3 * rate(0) - 4 * rate(-1) + rate(-2)) / (2 * h);
@@ -166,7 +168,7 @@ TEST(TimeFunction, CopiesAreIndependent) {
 }
 
 TEST(TimeFunction, DerivativeIsAccurateToItsOrder) {
-  // Truncation h^2/6 |f'''| plus round-off eps/h, h = cbrt(eps): both of order eps^(2/3).
+  // Truncation h^2/6 |f'''| plus round-off eps/h, with h = cbrt(eps): both are of order eps^(2/3).
   const double tolerance = 4 * std::pow(kEpsilon, 2.0 / 3.0);
   const TimeFunction sine = TimeFunction::parse("sin(t)");
   for (const double t : {-2.0, -0.3, 0.0, 1e-7, 0.4, 0.9}) EXPECT_NEAR(sine.derivative(t), std::cos(t), tolerance) << t;

@@ -1,4 +1,5 @@
-/// Unit quaternions as rotation parameters: what only they have. The common requirements are in rotation_test.cpp.
+/// Tests properties that only unit quaternions have as rotation parameters. The properties of all parametrisations are
+/// in rotation_test.cpp.
 
 #include "math/unit_quaternion.h"
 
@@ -42,7 +43,7 @@ TEST(UnitQuaternion, IdentitiesOfTheSpinOperators) {
               roundoff);
     EXPECT_LT(distance(0.25 * tangent * material.transpose(), rotation), roundoff);
     EXPECT_LT(distance(rotation.transpose() * tangent, material), 2 * roundoff);
-    // dq = 1/2 (0, spin) q, tangent to the sphere.
+    // dq = 1/2 (0, spin) q is tangent to the sphere.
     const Vector spin = samples.of_length(1.0);
     const Vector4 rate = unit_quaternion::inverse_tangent(q) * spin;
     Vector4 pure;
@@ -55,7 +56,7 @@ TEST(UnitQuaternion, IdentitiesOfTheSpinOperators) {
 TEST(UnitQuaternion, DerivativesOfTheRotatedVector) {
   Samples samples;
   for (int i = 0; i < repetitions; ++i) {
-    // Any norm and any direction of change: the derivatives are those of the polynomial.
+    // The norm and the direction of change are arbitrary: the derivatives are those of the polynomial.
     const Vector4 q = 1.3 * samples.direction<4>(), d = samples.direction<4>();
     const Vector a = samples.of_length(1.0);
     const Matrix rate = derivative(unit_quaternion::rotation(perturbed(q, d)));
@@ -92,7 +93,7 @@ TEST(UnitQuaternion, Normalisation) {
   }
 }
 
-/// Curvature of an interpolated and normalised quaternion against that of the rotation matrix.
+/// Compares the curvature of an interpolated and normalised quaternion with the curvature of the rotation matrix.
 TEST(UnitQuaternion, MaterialTangentGivesTheCurvature) {
   Samples samples;
   for (int i = 0; i < repetitions; ++i) {

@@ -1,4 +1,4 @@
-// Convex hulls of points and of meshes.
+// Tests convex hulls of points and of mesh files, and the errors of bad files.
 #include "meshes/convex_hull.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ std::vector<Vector3> on_a_sphere(int count) {
   return out;
 }
 
-/// Corners of faces are in their planes and go round them counterclockwise; all corners are inside of all faces.
+/// Checks that the corners of each face are in its plane, in counterclockwise order, and that all corners are inside of
+/// all faces.
 void expect_convex(const Polytope& body, double size) {
   for (const Polytope::Face& face : body.faces) {
     EXPECT_NEAR(face.normal.norm(), 1, 1e-14);
@@ -34,12 +35,12 @@ void expect_convex(const Polytope& body, double size) {
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3 &a = body.corners[face.corners[i]], &b = body.corners[face.corners[(i + 1) % count]],
                     &c = body.corners[face.corners[(i + 2) % count]];
-      EXPECT_NEAR(height_over(face, a), 0, 2e-6 * size);  // planes of a millionth are one
+      EXPECT_NEAR(height_over(face, a), 0, 2e-6 * size);  // planes that differ by a millionth count as one
       EXPECT_GT((b - a).cross(c - b).dot(face.normal), 0);
     }
     for (const Vector3& corner : body.corners) EXPECT_LT(height_over(face, corner), 2e-6 * size);
   }
-  // Euler: corners - edges + faces = 2, each edge of two faces.
+  // Euler: corners - edges + faces = 2. Each edge belongs to two faces.
   std::size_t sides = 0;
   for (const Polytope::Face& face : body.faces) sides += face.corners.size();
   EXPECT_EQ(body.corners.size() + body.faces.size(), 2 + sides / 2);
@@ -49,7 +50,7 @@ TEST(ConvexHulls, OfABoxAreTheBox) {
   const Vector3 half(0.3, 0.2, 0.1);
   std::vector<Vector3> points = box_polytope(half).corners;
   points.emplace_back(0, 0, 0);
-  points.emplace_back(0.1, 0.2, 0.05);  // in a face
+  points.emplace_back(0.1, 0.2, 0.05);  // inside a face
   const Polytope hull = convex_hull(points);
   EXPECT_EQ(hull.corners.size(), 8u);
   EXPECT_EQ(hull.faces.size(), 6u);
@@ -66,7 +67,8 @@ TEST(ConvexHulls, HoldAllPoints) {
   expect_convex(hull, 4);
 }
 
-// A cap that 64 circles cover on a sphere has the angle 2/8: it lacks 1 - cos, twice as much where they lie unevenly.
+// If 64 circles cover the unit sphere, each cap has the angle 2/8. The hull lacks 1 - cos there, and the tolerance
+// allows four times this for uneven points.
 TEST(ConvexHulls, WithFewCornersLackLittle) {
   const std::vector<Vector3> points = on_a_sphere(2000);
   const Polytope hull = simple_hull(points, 64);
@@ -84,7 +86,7 @@ TEST(ConvexHulls, OfWhatIsFlatAreRefused) {
   EXPECT_THROW(convex_hull({}), meshes::FlatPoints);
 }
 
-/// A file of the folder of tests, with this text.
+/// Writes a file with this text into the test folder and returns its path.
 std::string written(const std::string& name, const std::string& text) {
   const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / name;
   std::ofstream(path) << text;

@@ -1,4 +1,4 @@
-// What touches, as messages and as arrows.
+// Tests messages and arrows about contacts, for a block and a ball at rest on a floor.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWeight = 2 * 9.81;
 
-/// A block and a ball on the floor; neither can turn.
+/// A block and a ball on the floor. Neither can turn.
 constexpr const char* kScene = R"(<robot name="rest"><link name="world"/><ground name="floor"/>
 <joint name="of_block" type="prismatic"><parent link="world"/><child link="block"/><axis xyz="0 0 1"/>
 <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
@@ -58,7 +58,7 @@ TEST(ContactMessages, HaveEachPoint) {
   EXPECT_NEAR(on_floor, -kWeight, 1e-4);
 }
 
-/// The fields of gazebo_msgs/ContactState and ContactsState, as those have them.
+/// Types with the same fields as gazebo_msgs/ContactState and ContactsState.
 struct GazeboState {
   std::string info, collision1_name, collision2_name;
   std::vector<geometry_msgs::Wrench> wrenches;
@@ -97,7 +97,8 @@ TEST(ContactMessages, OfSensorsStandInTheLinksFrame) {
   EXPECT_NEAR(message.wrench.force.z, kWeight, 1e-4);
 }
 
-// An arrow at each point, as long as its part of the largest; the legend has their colour.
+// Each point has an arrow. Its length is proportional to its part of the largest force, and the legend has the same
+// colour.
 TEST(ContactMessages, AreArrows) {
   const Simulation simulation = resting();
   MarkerChoice choice;
@@ -117,7 +118,8 @@ TEST(ContactMessages, AreArrows) {
         lowest = std::min(lowest, point.z);
         highest = std::max(highest, point.z);
       }
-      // The block's corners and its edges' points share its weight; the ball's one point has all of it, downwards.
+      // The corners and edge points of the block share its weight. The single point of the ball carries the whole
+      // weight, downwards.
       EXPECT_GT(highest, 0.01);
       EXPECT_LT(lowest, -2 * highest);
     }

@@ -1,4 +1,4 @@
-// What a simulation looks like in rviz.
+// Tests the markers that show a simulation in rviz.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "flexarm/scene/point_spring.h"
+#include "flexarm/scene/urdf_reader.h"
 #include "messages/conversions.h"
 #include "messages/marker_messages.h"
+#include "messages/picture_axes.h"
 #include "messages/state_messages.h"
 #include "scene/scene_builder.h"
 
@@ -18,7 +21,7 @@ using scene::JointKind;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-/// An arm with a motor, a beam, a probe, and a cell between both.
+/// Returns an arm with a motor, a beam, a probe, and a force cell between hub and beam.
 scene::SceneBuilder arm() {
   scene::SceneBuilder b("arm");
   b.scene.integrator.step = 0.01;
@@ -61,12 +64,35 @@ std::set<std::string> names(const MarkerArray& message) {
   return names;
 }
 
-/// The largest distance of a marker's points from a line, and the farthest way along it.
+/// Returns how far the points of a marker reach along a line. Checks their largest distance from the line.
 double reach_along(const Marker& marker, const Vector3& from, const Vector3& along) {
   double farthest = 0;
   for (const geometry_msgs::Point& point : marker.points)
     farthest = std::max(farthest, (to_vector(point) - from).dot(along.normalized()));
   return farthest;
+}
+
+// The robot description that rviz shows has no barrels and rods.
+TEST(CylinderMarkers, ShowBarrelAndRod) {
+  const scene::ReadResult read = scene::read_scene_text(
+      "<robot name='boom'><link name='world'/><link name='boom'><inertial><mass value='1'/>"
+      "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+      "<joint name='hinge' type='continuous'><parent link='world'/><child link='boom'/><axis xyz='0 1 0'/></joint>"
+      "<cylinder name='lift' from='world' from_at='0 0 -1' to='boom' to_at='1 0 -1'>"
+      "<barrel radius='0.1' length='0.7'/></cylinder></robot>",
+      "boom.urdf");
+  ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
+  const Simulation simulation(*read.scene);
+  MarkerMessages messages(simulation, "frame", {}, [](const std::string& text) { ADD_FAILURE() << text; });
+  const MarkerArray message = shown(messages);
+  const Marker *barrel = find(message, "lift_barrel"), *rod = find(message, "lift_rod");
+  ASSERT_TRUE(barrel && rod);
+  EXPECT_EQ(barrel->type, Marker::CYLINDER);
+  EXPECT_DOUBLE_EQ(barrel->scale.x, 0.2);
+  EXPECT_DOUBLE_EQ(barrel->scale.z, 0.7);
+  EXPECT_LT((to_vector(barrel->pose.position) - Vector3(0.35, 0, -1)).norm(), 1e-12);
+  EXPECT_LT((to_vector(rod->pose.position) - Vector3(1 - 0.3, 0, -1)).norm(), 1e-12);
+  EXPECT_LT(rod->scale.x, barrel->scale.x);
 }
 
 TEST_F(Markers, HaveAllThatThereIs) {
@@ -88,7 +114,7 @@ TEST_F(Markers, HaveAllThatThereIs) {
   }
 }
 
-/// Its boom is rigid.
+/// Returns the same arm with a rigid boom.
 scene::SceneBuilder rigid_arm() {
   scene::SceneBuilder b = arm();
   b.scene.links.back().beam->elements = 0;
@@ -109,7 +135,7 @@ TEST_F(RigidMarkers, HaveTheShapeOfTheBeam) {
     ASSERT_TRUE(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z));
     reach = std::max(reach, point.x);
   }
-  EXPECT_NEAR(reach, 2, 1e-6);  // a float's digits
+  EXPECT_NEAR(reach, 2, 1e-6);  // digits of a float
 }
 
 TEST_F(RigidMarkers, ComeWithAFrameAtTheTipThatStandsStill) {
@@ -125,11 +151,34 @@ TEST_F(RigidMarkers, ComeWithAFrameAtTheTipThatStandsStill) {
   EXPECT_EQ(rigid.frames().count("boom/tip"), 1u);
 }
 
+// A spring between points is a line from one point to the other; without one there is no such marker.
+TEST(LineMarkers, FollowTheirPoints) {
+  scene::SceneBuilder b = arm();
+  auto spring = std::make_shared<scene::PointSpring>();
+  spring->from = "world";
+  spring->from_at = {0, 0, 1};
+  spring->to = "boom";
+  spring->to_at = {2, 0, 0};
+  spring->stiffness = 10;
+  b.scene.force_elements.push_back(spring);
+  Simulation simulation(b.scene);
+  MarkerMessages messages(simulation, "frame", {}, [](const std::string&) {});
+  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  const MarkerArray message = shown(messages);
+  const Marker* line = find(message, "lines");
+  ASSERT_NE(line, nullptr);
+  ASSERT_EQ(line->points.size(), 2u);
+  EXPECT_EQ(line->points[0].z, 1);
+  const Vector3 tip = simulation.probe_pose(0).position;
+  EXPECT_NEAR(line->points[1].x, tip.x(), 1e-12);
+  EXPECT_NEAR(line->points[1].z, tip.z(), 1e-12);
+}
+
 TEST_F(Markers, HaveWhatIsChosen) {
   simulation_.command_effort(0, 5);
   step(5);
   for (const std::string& name : MarkerChoice::names()) {
-    MarkerChoice choice{false, false, false, false, false, false, false, false};
+    MarkerChoice choice{false, false, false, false, false, false, false, false, false};
     *choice.find(name) = true;
     MarkerMessages messages = this->messages(choice);
     shown(messages);
@@ -138,10 +187,10 @@ TEST_F(Markers, HaveWhatIsChosen) {
   EXPECT_EQ(MarkerChoice().find("beam"), nullptr);
 }
 
-// The longest arrow is the largest force since the start, and the legend names it; a reset begins anew.
+// The longest arrow is the largest force since the start, and the legend names this force. A reset starts anew.
 TEST_F(Markers, ArrowsAreAsLongAsForcesAreLarge) {
   MarkerMessages messages = this->messages();
-  const double radius = scene_extent(simulation_).radius;
+  const double radius = pictures::scene_extent(simulation_).radius;
   const auto force = [&](double z) {
     simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, z}, Vector3::Zero()}, false, {}}});
     return shown(messages);
@@ -164,22 +213,22 @@ TEST_F(Markers, MomentsGoAroundTheirAxes) {
   simulation_.command_effort(0, 5);
   step(1);
   const Marker efforts = *find(shown(messages), "joint efforts");
-  const double circle = kLargestCircle * scene_extent(simulation_).radius;
+  const double circle = kLargestCircle * pictures::scene_extent(simulation_).radius;
   double turn = 0;
   for (const geometry_msgs::Point& point : efforts.points) {
     EXPECT_NEAR(std::hypot(point.x, point.y), circle, 0.2 * circle);
     turn = std::max(turn, std::atan2(point.y, point.x));
   }
-  EXPECT_GT(turn, 3);  // it goes around
+  EXPECT_GT(turn, 3);  // the arrow goes around the axis
 }
 
-// What rviz has drawn has to be taken away by who drew it.
+// rviz keeps what it has drawn, so the sender must delete markers that are gone.
 TEST_F(Markers, WhatIsNotThereAnyMoreIsDeleted) {
   MarkerMessages messages = this->messages();
   simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
   EXPECT_NE(find(shown(messages), "applied wrenches"), nullptr);
   simulation_.apply_wrenches({});
-  for (int k = 0; k < 2; ++k) {  // and again, in case that the message got lost
+  for (int k = 0; k < 2; ++k) {  // the deletion is repeated, in case a message was lost
     const MarkerArray message = shown(messages);
     EXPECT_EQ(find(message, "applied wrenches"), nullptr);
     EXPECT_NE(find(message, "applied wrenches", Marker::DELETE), nullptr);
@@ -202,7 +251,7 @@ TEST_F(Markers, TrailsAreBounded) {
   EXPECT_EQ(trail.colors.back().a, 1);
   simulation_.reset();
   EXPECT_EQ(find(shown(messages), "trails"), nullptr);
-  // However many messages are made:
+  // Trails stay bounded, however many messages are made.
   choice.trail_duration = 50;
   MarkerMessages others = this->messages(choice);
   for (int n = 0; n < 1500; ++n) {
@@ -225,8 +274,8 @@ TEST_F(Markers, TextHasTimeFactorAndEnergies) {
   EXPECT_EQ(find(messages.make(ros::Time(1), std::nullopt), "text")->text.find("real time"), std::string::npos);
 }
 
-/// How far a marker's middle is from the scene's in the picture, to the right and up, in radii.
-std::pair<double, double> place_in_picture(const Marker& marker, const SceneExtent& extent) {
+/// Returns the offset of a marker's middle from the scene's middle in the picture, to the right and up, in radii.
+std::pair<double, double> place_in_picture(const Marker& marker, const pictures::SceneExtent& extent) {
   const Vector3 from_center = (to_vector(marker.pose.position) - extent.center) / extent.radius;
   const PictureAxes axes = picture_axes();
   EXPECT_NEAR(from_center.dot(axes.to_camera), 0, 1e-12);
@@ -248,9 +297,9 @@ TEST_F(Markers, SayWhyNothingMovesAboveTheScene) {
   const Marker state = state_of(messages.make(ros::Time(1), 1.0, reason));
   EXPECT_EQ(std::count(state.text.begin(), state.text.end(), '\n'), 4);
   EXPECT_EQ(state.text.substr(state.text.size() - 3), "...");
-  // Its lower edge, and the upper one of the text below, are beyond all that the arm reaches.
-  const SceneExtent extent = scene_extent(simulation_);
-  const double line = 1.3 * state.scale.z / extent.radius;  // as rviz has it
+  // The lower edge of this text and the upper edge of the text below are outside of everything that the arm reaches.
+  const pictures::SceneExtent extent = pictures::scene_extent(simulation_);
+  const double line = 1.3 * state.scale.z / extent.radius;  // line height in rviz
   EXPECT_GT(place_in_picture(state, extent).second - 2.5 * line, kOutline);
   EXPECT_LT(place_in_picture(*find(shown(messages), "text"), extent).second + 1.5 * line, -kOutline);
 }
@@ -260,10 +309,10 @@ TEST_F(Markers, LegendIsBesideAllThatTheArmReaches) {
   simulation_.command_effort(0, 5);
   simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
   step(1);
-  const SceneExtent extent = scene_extent(simulation_);
+  const pictures::SceneExtent extent = pictures::scene_extent(simulation_);
   for (const Marker& marker : shown(messages).markers) {
     if (marker.ns != "legend" || marker.type != Marker::TEXT_VIEW_FACING) continue;
-    constexpr double kLetter = 0.5;  // of its height, wide
+    constexpr double kLetter = 0.5;  // width of a letter relative to its height
     const double half = 0.5 * kLetter * marker.scale.z * static_cast<double>(marker.text.size()) / extent.radius;
     EXPECT_LT(place_in_picture(marker, extent).first + half, -kOutline) << marker.text;
   }

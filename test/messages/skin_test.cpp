@@ -1,14 +1,11 @@
-// Surfaces that bend with beams, and where they come from.
+// Tests surfaces that bend with beams, and the shapes of rigid bodies.
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "messages/mesh_file.h"
 #include "messages/skin.h"
 
 namespace flexarm::messages {
@@ -16,7 +13,8 @@ namespace {
 
 constexpr int kSections = 41;
 constexpr double kLength = 2;
-// Of a chord between two sections on an arc of radius R: (L/n)^2/(8 R), and as much again of offsets beside it.
+// Error of a chord between two sections on an arc of radius R: (L/n)^2/(8 R). Points beside the line have the same
+// error again.
 constexpr double kRadius = 1.5, kChord = (kLength / (kSections - 1)) * (kLength / (kSections - 1)) / (8 * kRadius);
 
 std::vector<Pose> straight_line() {
@@ -26,7 +24,7 @@ std::vector<Pose> straight_line() {
   return sections;
 }
 
-/// A section of the line bent to a circle in the plane of x and y.
+/// Returns a section of the line, bent to a circle in the x-y plane.
 Pose bent(double s) {
   const double angle = s / kRadius;
   return {{kRadius * std::sin(angle), kRadius * (1 - std::cos(angle)), 0},
@@ -50,7 +48,7 @@ double area(const visualization_msgs::Marker& marker) {
   return sum;
 }
 
-/// Of the inside of a closed surface.
+/// Returns the volume inside a closed surface.
 double volume(const visualization_msgs::Marker& marker) {
   double sum = 0;
   for (std::size_t k = 0; k < marker.points.size(); k += 3)
@@ -79,12 +77,12 @@ TriangleMesh long_box() {
 
 TEST(Skin, OfAnUndeformedBeamIsTheMesh) {
   const visualization_msgs::Marker box = drawn(Skin(long_box(), straight_line()), unloaded(straight_line()));
-  EXPECT_GT(box.points.size(), 3u * 12);  // it was split
+  EXPECT_GT(box.points.size(), 3u * 12);  // the box was split
   EXPECT_NEAR(volume(box), kLength * 0.2 * 0.1, 1e-12);
   EXPECT_NEAR(area(box), 2 * (kLength * 0.2 + kLength * 0.1 + 0.2 * 0.1), 1e-12);
 }
 
-// Each corner goes where its section carries it; sections stay plane, so that the volume stays.
+// Each corner moves with its section. Sections stay plane, so the volume is unchanged.
 TEST(Skin, BendsWithTheBeam) {
   const visualization_msgs::Marker straight = drawn(Skin(long_box(), straight_line()), unloaded(straight_line()));
   const visualization_msgs::Marker box = drawn(Skin(long_box(), straight_line()), bent_line());
@@ -100,7 +98,7 @@ TEST(Skin, HasNoGaps) {
   TriangleMesh mesh = long_box();
   mesh.add(sphere_mesh({0.3}), {Vector3(0.7, 0.1, 0), Quaternion::Identity()});
   const visualization_msgs::Marker marker = drawn(Skin(mesh, straight_line()), bent_line());
-  // Each way along an edge has its way back.
+  // Each edge of a triangle occurs once in each direction.
   const auto rounded = [](const Vector3& p) {
     return std::array<long, 3>{std::lround(p.x() * 1e9), std::lround(p.y() * 1e9), std::lround(p.z() * 1e9)};
   };
@@ -122,7 +120,7 @@ TEST(Skin, GoesWithTheEndsBeyondThem) {
   EXPECT_NEAR(volume(box), 0.4 * 0.2 * 0.2, 1e-12);
   Vector3 middle = Vector3::Zero();
   for (std::size_t k = 0; k < box.points.size(); ++k) middle += corner(box, k) / static_cast<double>(box.points.size());
-  // Two triangles of each face: opposite corners of a face count twice as much as the other two.
+  // Each face has two triangles: two opposite corners of a face count twice as much as the other two.
   EXPECT_LT((middle - bent(kLength) * Vector3(0.5, 0, 0)).norm(), 0.2);
 }
 
@@ -155,95 +153,12 @@ TEST(Shapes, AreClosedAndOfTheirSize) {
     draw(mesh, marker);
     return marker;
   };
-  const double polygon = 0.5 * kSides * std::sin(2 * M_PI / kSides);  // area for a radius of 1
+  const double polygon = 0.5 * kSides * std::sin(2 * M_PI / kSides);  // area of the polygon for a radius of 1
   EXPECT_NEAR(volume(marker_of(box_mesh({{1, 2, 3}}))), 6, 1e-12);
   EXPECT_NEAR(volume(marker_of(cylinder_mesh({0.5, 3}))), 3 * 0.25 * polygon, 1e-12);
   const double sphere = volume(marker_of(sphere_mesh({1})));
   EXPECT_GT(sphere, 0.85 * 4 / 3 * M_PI);
   EXPECT_LT(sphere, 4 / 3.0 * M_PI);
-}
-
-// ---------------------------------------------------------------- files
-
-class MeshFile : public ::testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ + "/" + name, std::ios::binary) << content;
-    return "file://" + folder_ + "/" + name;
-  }
-  const std::string folder_ = ::testing::TempDir() + "flexarm_mesh_file_test";
-};
-
-/// A tetrahedron with the corners 0, x, y, z, in millimetres.
-const int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-const float kCorners[4][3] = {{0, 0, 0}, {1000, 0, 0}, {0, 1000, 0}, {0, 0, 1000}};
-
-std::string ascii_stl() {
-  std::string text = "solid tetrahedron\n";
-  for (const auto& face : kFaces) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const int k : face)
-      text += "vertex " + std::to_string(kCorners[k][0]) + " " + std::to_string(kCorners[k][1]) + " " +
-              std::to_string(kCorners[k][2]) + "\n";
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid tetrahedron\n";
-}
-
-std::string binary_stl() {
-  std::string bytes(80, ' ');
-  const auto append = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  append(std::uint32_t(4));
-  for (const auto& face : kFaces) {
-    for (int k = 0; k < 3; ++k) append(0.0F);
-    for (const int k : face)
-      for (const float x : kCorners[k]) append(x);
-    append(std::uint16_t(0));
-  }
-  return bytes;
-}
-
-std::string obj() {
-  std::string text;
-  for (const auto& [x, y, z] : kCorners)
-    text += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
-  for (const auto& [a, b, c] : kFaces)
-    text += "f " + std::to_string(a + 1) + " " + std::to_string(b + 1) + " " + std::to_string(c + 1) + "\n";
-  return text;
-}
-
-TEST_F(MeshFile, IsReadAndScaled) {
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"ascii.stl", ascii_stl()},
-                                      {"binary.stl", binary_stl()},
-                                      {"BINARY.STL", binary_stl()},
-                                      {"tetrahedron.obj", obj()}}) {
-    const TriangleMesh mesh = read_mesh({write(name, content), {1e-3, 1e-3, 2e-3}});
-    EXPECT_EQ(mesh.triangles.size(), 4u) << name;
-    visualization_msgs::Marker marker;
-    draw(mesh, marker);
-    EXPECT_NEAR(volume(marker), 2 / 6.0, 1e-6) << name;  // single precision
-    for (const TriangleMesh::Vertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.normal.norm(), 1, 1e-6) << name;
-  }
-}
-
-TEST_F(MeshFile, ThatCannotBeUsedSaysWhy) {
-  const auto why = [](const std::string& url, const Vector3& scale = Vector3::Ones()) -> std::string {
-    try {
-      read_mesh({url, scale});
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_NE(why("http://example.org/a.stl").find("package:// or file://"), std::string::npos);
-  EXPECT_NE(why("a.stl").find("package:// or file://"), std::string::npos);
-  EXPECT_NE(why("file://" + folder_ + "/none.stl"), "");
-  EXPECT_NE(why("package://no_such_package/none.stl"), "");
-  for (const char* name : {"empty.stl", "empty.obj", "empty", "empty.xyz"}) EXPECT_NE(why(write(name, "")), "") << name;
-  EXPECT_NE(why(write("broken.stl", binary_stl().substr(0, 120))), "");
-  EXPECT_NE(why(write("broken.dae", "<COLLADA")), "");
 }
 
 }  // namespace

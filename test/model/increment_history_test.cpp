@@ -1,4 +1,4 @@
-// The predictor's extrapolation.
+// Tests the extrapolation of the predictor from the increments of past steps.
 #include "model/increment_history.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
 
-/// Steps, oldest first; the last one backwards, as in a composed scheme.
+/// Lengths of steps, oldest first. The last step may go backwards, as in a composed scheme.
 const std::vector<std::vector<double>> kSteps = {
     {1, 1, 1, 1}, {1, 1, 0.5, 0.5}, {0.2, 0.4, 0.8, 1.6}, {0.41, 0.41, -0.66, 0.41}, {0.5, 1, 1, -0.3}};
 
@@ -20,7 +20,7 @@ double power(double t, int order) {
   return std::pow(t, order);
 }
 
-/// t^order over the steps; the time reached is written to `time`.
+/// Returns the increments of t^order over the steps, and writes the time that is reached to `time`.
 IncrementHistory history_of(const std::vector<double>& steps, int order, double& time) {
   IncrementHistory history;
   time = 3;
@@ -31,7 +31,7 @@ IncrementHistory history_of(const std::vector<double>& steps, int order, double&
   return history;
 }
 
-// Places t^(p+1) at the ends of p+1 steps, and before them, are foreseen exactly by the order p.
+// Order p predicts polynomials up to degree p + 1 exactly from p + 1 increments.
 TEST(IncrementHistory, IsExactForPolynomials) {
   for (const std::vector<double>& steps : kSteps)
     for (int order = 0; order <= IncrementHistory::kHighestOrder; ++order)
@@ -40,7 +40,7 @@ TEST(IncrementHistory, IsExactForPolynomials) {
         const IncrementHistory history = history_of(steps, power_of_time, time);
         const double step = 0.25;
         const IncrementHistory::Weights weights = history.weights(order, 0, step);
-        if (weights[0] == 0) continue;  // would blow up
+        if (weights[0] == 0) continue;  // such weights would amplify errors
         double foreseen = 0, scale = 0;
         for (int i = 0; i <= order; ++i) {
           foreseen += weights[i] * history.increments[i][0];

@@ -1,4 +1,4 @@
-// Means of prestrains over steps, against integrals by hand.
+// Tests means of prestrains over steps against integrals by hand.
 #include "model/prestrain.h"
 
 #include <cmath>
@@ -14,11 +14,11 @@ TEST(MeanPrestrain, IsTheIntegralOfEachStrain) {
   Model model;
   for (const char* text : {"t < sqrt(0.1) ? 3 : -3", "0:0 1:2 2:-2", "t^2", "7"})
     model.histories.push_back(TimeFunction::parse(text));
-  // Axial and bending y jump, torsion is a table, shear z a parabola, bending z a number.
+  // Axial strain and bending about y jump, torsion is a table, shear in z is a parabola, bending about z is a number.
   model.prestrains.push_back({{0, -1, 2, 1, 0, 3}, Vector3::Zero()});
   const double begin = 0.25, end = 1.5, width = end - begin, jump = std::sqrt(0.1);
   const double jumping = 3 * (jump - begin) - 3 * (end - jump);
-  // 2 t up to 1, then 2 - 4 (t - 1).
+  // 2 t until 1, then 2 - 4 (t - 1).
   const double table = (1 - begin * begin) + (2 * 0.5 - 2 * 0.25),
                parabola = (std::pow(end, 3) - std::pow(begin, 3)) / 3;
   Vector6 expected;
@@ -28,7 +28,7 @@ TEST(MeanPrestrain, IsTheIntegralOfEachStrain) {
   EXPECT_EQ(mean_prestrain(model, -1, begin, end), Vector6(Vector6::Zero()));
 }
 
-// Strains of the centroid are those of the reference line less c x K: linear, and so are their means.
+// Strains of the centroid are those of the reference line minus c x K. This is linear, and so is the mean.
 TEST(MeanPrestrain, IsAboutTheCentroid) {
   Model model;
   for (const char* text : {"t < 0.3 ? 1 : 2", "0:0 1:4"}) model.histories.push_back(TimeFunction::parse(text));

@@ -1,3 +1,4 @@
+/// Tests forces at the end of a step that are extrapolated from means over steps.
 #include "model/step_means.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +8,8 @@
 namespace flexarm {
 namespace {
 
-/// Over steps of these lengths, of 2 + 3 t to which `alternating` is added and taken away in turns: how far what they
-/// say of the end is from the truth.
+/// Returns the error of the extrapolated end value for steps of these lengths. The function is 2 + 3 t; `alternating`
+/// is added to its means and subtracted from them in turns.
 double error_at_end(const std::vector<double>& steps, double alternating) {
   StepMeans means;
   means.resize(1);
@@ -23,19 +24,19 @@ double error_at_end(const std::vector<double>& steps, double alternating) {
   return std::abs(means.at_end(0) - (2 + 3 * time));
 }
 
-// Of second order: a force that grows evenly is known exactly, whatever the lengths of the steps.
+// The extrapolation is of second order: a linearly growing force is known exactly, for any lengths of steps.
 TEST(StepMeans, LeadToTheEndOfTheLastStep) {
   for (const std::vector<double>& steps :
        {std::vector<double>{0.1, 0.1, 0.1}, {0.1, 0.1, 0.02}, {0.02, 0.1, 0.1}, {0.3, 0.01, 0.2, 0.05}})
     EXPECT_LT(error_at_end(steps, 0), 1e-14);
 }
 
-// What flips its sign from step to step is not put out where these are equal.
+// A part that flips its sign in every step vanishes from the output if the steps are equal.
 TEST(StepMeans, HaveNothingThatAlternates) {
   EXPECT_LT(error_at_end({0.1, 0.1, 0.1, 0.1}, 5), 1e-13);
 }
 
-// A restart is a force at an instant.
+// A restart gives the force at an instant.
 TEST(StepMeans, BeginAnewWithAForce) {
   StepMeans means;
   means.resize(1);

@@ -1,4 +1,4 @@
-"""Statics, modes, runs to an accuracy."""
+"""Test statics, modes, linear models and runs to an accuracy in Python."""
 
 import math
 
@@ -23,7 +23,7 @@ def test_statics_are_those_of_the_command_line(tmp_path):
 
 
 def test_no_equilibrium(tmp_path):
-    """A rotor that a constant moment drives has none."""
+    """A rotor with a constant moment has no equilibrium."""
     path = tmp_path / "rotor.urdf"
     path.write_text(hinged_rod("0 0 1", "0 0 0", (1, 1, 1), '<effort joint="hinge" history="1"/>'))
     simulation = flexarm.Simulation(flexarm.read_scene(path))
@@ -39,7 +39,7 @@ def test_no_equilibrium(tmp_path):
 
 
 def test_a_warning_says_what_falls():
-    """A rod that stands upright on a hinge, pulled down by gravity."""
+    """A rod stands upright on a hinge; gravity pulls it down."""
     simulation = flexarm.Simulation(flexarm.read_scene_text(hinged_rod("0 1 0", "0 0 1", (0.1, 0.1, 0.1))))
     with pytest.warns(flexarm.SceneWarning, match="would fall from it"):
         simulation.solve_static(stable=False)
@@ -53,9 +53,9 @@ def test_modes():
     with open(example("rigid_double_pendulum"), encoding="utf-8") as file:
         text = file.read().replace('<dynamics damping="0.01" friction="0.002"/>', "")
     simulation = flexarm.Simulation(flexarm.read_scene_text(text))
-    simulation.set_joint_state({"shoulder": math.pi / 2})  # hangs
+    simulation.set_joint_state({"shoulder": math.pi / 2})  # the arm hangs
     modes = simulation.natural_modes(2)
-    # Of two rods, M q'' + K q = 0 in the rods' own angles, by Lagrange's equations.
+    # The equations of two rods, M q'' + K q = 0 in the absolute angles of the rods, by Lagrange.
     length, mass, gravity = 1.0, 1.0, 9.81
     inertia = 0.0833333333333 + mass * length**2 / 4
     m = numpy.array([[inertia + mass * length**2, mass * length**2 / 2], [mass * length**2 / 2, inertia]])
@@ -75,7 +75,7 @@ def test_linear_models():
     with open(example("rigid_double_pendulum"), encoding="utf-8") as file:
         text = file.read().replace('<dynamics damping="0.01" friction="0.002"/>', '<dynamics damping="0.1"/>')
     simulation = flexarm.Simulation(flexarm.read_scene_text(text))
-    simulation.set_joint_state({"shoulder": math.pi / 2})  # hangs
+    simulation.set_joint_state({"shoulder": math.pi / 2})  # the arm hangs
     model = simulation.linearise(outputs=["position:elbow", "velocity:shoulder"])
     assert model.states == ["shoulder", "elbow", "d/dt shoulder", "d/dt elbow"]
     assert model.inputs == ["effort:shoulder", "effort:elbow"] and len(model.outputs) == 2
@@ -93,7 +93,7 @@ def test_linear_models():
         numpy.testing.assert_allclose(gain, model.c @ states + model.d, rtol=1e-12)
     times, outputs = model.step_response(20000.0, intervals=4)
     assert times.tolist() == [0, 5000, 10000, 15000, 20000] and outputs.shape == (5, 2, 2)
-    # Nothing is left of what was on the way.
+    # The transient has decayed: only the static gain remains.
     numpy.testing.assert_allclose(outputs[-1], model.d - model.c @ numpy.linalg.solve(model.a, model.b), atol=1e-10)
     small, hankel = model.reduced(2)
     assert len(small.states) == 2 and len(hankel) == 4

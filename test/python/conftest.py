@@ -1,4 +1,5 @@
-"""What the tests of the Python package share. FLEXARM_PROGRAM is the command line's."""
+"""Fixtures and helpers of the tests of the Python package. The variable FLEXARM_PROGRAM is the path of the command-line
+program."""
 
 import os
 import subprocess
@@ -12,9 +13,9 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 
 
 def hinged_rod(axis, centre, inertia, simulation="", mass="1", parameters="", dynamics=""):
-    """The scene of a rod on a hinge: axis, centre of mass [m], three moments of inertia [kg m^2], mass [kg].
+    """Return the scene of a rod on a hinge: axis, centre of mass [m], three moments of inertia [kg m^2], mass [kg].
 
-    simulation: what <simulation> has. parameters: lines before all links. dynamics: elements of the joint.
+    simulation: content of <simulation>. parameters: lines before all links. dynamics: elements of the joint.
     """
     return """
 <robot name="rod">
@@ -33,7 +34,7 @@ def hinged_rod(axis, centre, inertia, simulation="", mass="1", parameters="", dy
 """ % (parameters, axis, dynamics, centre, mass, *inertia, simulation)
 
 
-# From 1 s on its steps cannot be done: they may not be halved, and Newton's method is not given enough iterations.
+# From 1 s on, steps of this scene fail: they may not be halved, and Newton's method gets too few iterations.
 FAILING = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), """
     <integrator step="0.1" max_iterations="4" max_halvings="0"/>
     <effort joint="hinge" history="t &lt; 0.95 ? 0 : 1e4"/>""")
@@ -61,19 +62,19 @@ def failing_scene(tmp_path):
 
 
 def command_line(*arguments, folder=None):
-    """Runs `flexarm ...`: status and what it says of errors."""
+    """Run `flexarm ...`. Return its exit status and its error output."""
     result = subprocess.run([os.environ["FLEXARM_PROGRAM"], *map(str, arguments)], cwd=folder, check=False,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
     return result.returncode, result.stderr
 
 
 def read_csv(path):
-    """Names of columns, and rows, bit for bit."""
+    """Return names of columns, and rows, bit for bit."""
     with open(path, encoding="utf-8") as file:
         names = file.readline().rstrip("\n").split(",")
         return names, numpy.array([[float(field) for field in line.split(",")] for line in file])
 
 
 def bits(array):
-    """To be compared: zeros of either sign differ, NaN are equal to themselves."""
+    """Return bytes for comparisons: zeros of different signs differ, and NaN equals itself."""
     return numpy.ascontiguousarray(array).tobytes()

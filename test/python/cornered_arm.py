@@ -1,8 +1,9 @@
-"""An arm that rubs or bounces: its scene, and its exact motion by an ODE solver with events."""
+"""An arm with dry friction or a stop: its scene, and its exact motion by an ODE solver with events."""
 
 import math
 
 import numpy
+import scipy.integrate
 from scipy.integrate import solve_ivp
 
 ARM = """<robot name="p"> <parameter name="angle" value="1"/> <parameter name="fc" value="{friction}"/>
@@ -14,36 +15,38 @@ ARM = """<robot name="p"> <parameter name="angle" value="1"/> <parameter name="f
   </simulation> </robot>"""
 INERTIA, WEIGHT = 0.3, 9.81 * 0.5
 START, LOWER, UPPER = 1.0, -0.4, 1.6
-PRECISE = dict(method="DOP853", rtol=1e-12, atol=1e-14)
+# scipy has DOP853 from version 1.4 on. RK45 gives the same, with more steps.
+PRECISE = dict(method="DOP853" if hasattr(scipy.integrate, "DOP853") else "RK45", rtol=1e-12, atol=1e-14)
 
 
 def rubbing_arm(step, friction=1.5, scheme="em"):
-    """The text of a scene: Coulomb friction of `friction` [N m], parameter `fc`."""
+    """Return the text of a scene with a Coulomb friction of `friction` [N m], which is the parameter `fc`."""
     return ARM.format(kind="continuous", joint='<dynamics friction="${fc}"/> <friction law="coulomb"/>',
                       friction=friction, step=step, scheme=scheme, more="")
 
 
 def bouncing_arm(step, scheme="em"):
-    """The text of a scene: a stop at `lower`, a start at `angle`."""
+    """Return the text of a scene with a stop at the parameter `lower` and a start at the parameter `angle`."""
     return ARM.format(kind="revolute", joint='<limit lower="${lower}" upper="%r" effort="0" velocity="0"/>' % UPPER,
                       friction=0, step=step, scheme=scheme, more='<effort joint="h" history="0.3*sin(4*t)"/>')
 
 
 def event(function):
-    """Of solve_ivp: ends where the function falls through zero."""
+    """Return an event for solve_ivp: the integration ends where the function falls through zero."""
     function.terminal, function.direction = True, -1
     return function
 
 
 def look(piece, times, found):
-    """Fills in what a piece of a motion has at those of the times that lie in it."""
+    """Fill in the motion at those of the times that lie in this piece of it."""
     inside = (times >= piece.t[0]) & (times <= piece.t[-1])
     if inside.any():
         found[:, inside] = piece.sol(times[inside])
 
 
 def rubbing(friction, times):
-    """{angle, rate} of the arm with Coulomb friction by the exact law, shape (2, times), and how often it turned."""
+    """Return {angle, rate} of the arm with Coulomb friction by the exact law, shape (2, times), and the number of
+    reversals."""
     time, state, found, turns = 0.0, [START, 0.0], numpy.zeros((2, len(times))), -1
     while time < times[-1]:
         turns += 1
@@ -61,9 +64,11 @@ def rubbing(friction, times):
 
 
 def bouncing(angle, step, times, lower=LOWER, ratio=0.497239):
-    """{angle, rate} of the arm over one hit by the documented law of stops (docs/notes/stops.md 2), shape (2, times).
+    """Return {angle, rate} of the arm over one hit by the documented law of stops (docs/notes/stops.md 2), shape (2,
+    times).
 
-    ratio: of the stop's damper to the critical one; that of schemes whose forces are means of steps.
+    ratio: damping of the stop relative to critical damping. The default is for schemes whose forces are means over
+    steps.
     """
     frequency, give = math.pi / (10 * step), 0.1 * (UPPER - lower)
     stiffness, damping = INERTIA * frequency**2, 2 * ratio * INERTIA * frequency
@@ -90,5 +95,5 @@ def bouncing(angle, step, times, lower=LOWER, ratio=0.497239):
 
 
 def fourth_order(value, way):
-    """The derivative at 0 of a function."""
+    """Return the derivative of a function at 0 by differences of fourth order."""
     return (8 * (value(way) - value(-way)) - (value(2 * way) - value(-2 * way))) / (12 * way)

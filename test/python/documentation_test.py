@@ -1,4 +1,4 @@
-"""The examples of docs/python.md and docs/linearise.md, each by itself."""
+"""Test that each example of docs/python.md and docs/linearise.md runs by itself."""
 
 import os
 import re
@@ -18,7 +18,7 @@ def text_of(name):
 
 
 def examples_of(name):
-    """Named by their headings, which are entries without code."""
+    """Yield the examples of a document, named by their headings. A heading without code is an entry without code."""
     heading, number = "", 0
     for title, code in re.findall(r"^## (.*?)$|^```python\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE):
         if title:
@@ -31,13 +31,13 @@ def examples_of(name):
 EXAMPLES = {name: list(examples_of(name)) for name in ("python.md", "linearise.md")}
 
 
-@pytest.mark.parametrize("name, count", [("python.md", 12), ("linearise.md", 2)])
+@pytest.mark.parametrize("name, count", [("python.md", 13), ("linearise.md", 2)])
 def test_there_is_an_example_for_each_job(name, count):
     assert len(EXAMPLES[name]) == text_of(name).count("```python\n") == count
 
 
 @pytest.mark.parametrize("code", [code for examples in EXAMPLES.values() for code in examples])
-@pytest.mark.filterwarnings("ignore:nothing holds link 'shoulder'")  # of the demo arm, in orbit
+@pytest.mark.filterwarnings("ignore:nothing holds link 'shoulder'")  # warning about the demo arm, which is in orbit
 def test_example(code, tmp_path, monkeypatch, capsys):
     for path in (example("flexible_two_link_arm"), example("rigid_double_pendulum"), DEMO):
         shutil.copy(path, tmp_path)
@@ -47,7 +47,7 @@ def test_example(code, tmp_path, monkeypatch, capsys):
 
 
 def test_command(tmp_path):
-    """`flexarm linearise ...` of docs/linearise.md."""
+    """Run the `flexarm linearise ...` command of docs/linearise.md."""
     (text,) = re.findall(r"^```sh\nflexarm (.*?)\n```", text_of("linearise.md"), re.MULTILINE)
     shutil.copy(DEMO, tmp_path)
     status, said = command_line(*shlex.split(text), folder=tmp_path)

@@ -1,4 +1,4 @@
-"""The environment of reinforcement learning."""
+"""Test the environment for reinforcement learning."""
 
 import numpy
 import pytest
@@ -43,12 +43,12 @@ def test_seeds_make_starts(pendulum):
 
     pendulum.run(7)
     environment = flexarm.Environment(pendulum, height, start=start)
-    pendulum.run(100)  # that one is a copy
+    pendulum.run(100)  # the environment has a copy, which this does not move
     first = episode(environment, 3)
     assert episode(environment, 4) != first
     assert episode(environment, 3) == first
     environment.reset(seed=3)
-    after = environment.reset()[0]  # the generator goes on
+    after = environment.reset()[0]  # the generator continues
     assert bits(after) != first[:len(bits(after))]
     assert environment.simulation.time == pytest.approx(0.007)
 

@@ -1,4 +1,4 @@
-"""What the tests of the identification share."""
+"""Helpers of the tests of the identification."""
 
 import numpy
 from scipy.stats import binom
@@ -7,7 +7,7 @@ import flexarm
 from conftest import hinged_rod
 from flexarm.identification import Column, Experiment, Measurement, Setting, Unknown
 
-# A rod on a hinge with a spring: quick to simulate.
+# A rod on a hinge with viscous friction, which is quick to simulate.
 ROD = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), '<integrator step="0.01"/>', mass="${mass}",
                  dynamics='<dynamics damping="${damping}"/>', parameters="""\
   <parameter name="mass" value="1.5" min="0.1" max="10"/>
@@ -15,7 +15,7 @@ ROD = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), '<integrator step="0.01"/
   <parameter name="nothing" value="1"/>
 """)
 TRUE = {"mass": 2.0, "damping": 0.5}
-# What a chance of one in ten thousand is left to.
+# Each statistical check fails by chance with this probability: one in ten thousand.
 CHANCE = 1e-4
 
 
@@ -28,7 +28,7 @@ def unknown(name, start, least=-numpy.inf, most=numpy.inf, of_start=False):
 
 
 def rod_experiment(path, times, noise=None, unknowns=None, values=None, initial=None, efforts=None, step=0.01):
-    """Of the rod's angle; measured is zero."""
+    """Return an experiment that measures the angle of the rod. The measured values are zero."""
     unknowns = unknowns or [unknown("mass", 1.5, 0.1, 10), unknown("damping", 0.2, 0)]
     measurement = Measurement(column("joint/hinge/position", noise), times, 0 * times)
     setting = Setting(str(path), values or {}, step, 1e-10)
@@ -36,19 +36,19 @@ def rod_experiment(path, times, noise=None, unknowns=None, values=None, initial=
 
 
 def measured_with(experiment, values, random=None, noise=0.0):
-    """Lets an experiment have measured what is simulated with these values, and noise."""
+    """Set the measured values to a simulation with these values, plus noise."""
     exact = experiment.simulate(values)
     experiment.measured[:] = exact + (noise * random.standard_normal(len(exact)) if random else 0)
     return experiment
 
 
 def coverage_limits(count, level=0.95):
-    """Between which numbers of intervals of a level cover the truth, of so many."""
+    """Return the limits for how many of `count` confidence intervals of a level cover the truth."""
     return binom.ppf([CHANCE, 1 - CHANCE], count, level)
 
 
 class Formula:
-    """In place of an experiment: a function of time and the unknowns."""
+    """A replacement for an experiment: a function of time and the unknowns."""
 
     def __init__(self, function, unknowns, truth, noise=None, times=numpy.linspace(0, 2, 201), random=None, sigma=0.0):
         self.unknowns, self._function, self._times = unknowns, function, times
@@ -64,7 +64,7 @@ class Formula:
 
 
 def failing_beyond(limit):
-    """A decay that fails where its rate is beyond the limit."""
+    """Return a decay that fails if its rate is beyond the limit."""
 
     def function(times, size, rate):
         if rate > limit:

@@ -1,4 +1,4 @@
-"""`flexarm identify` with `derivatives: forward` over stops and dry friction, of motions that ODE solvers made."""
+"""Test `flexarm identify` with `derivatives: forward` for stops and dry friction, on motions by ODE solvers."""
 
 import json
 
@@ -13,7 +13,8 @@ NOISE, STEP = 1e-3, 1e-3  # rad, s
 
 
 def identified(folder, scene, times, angles, name):
-    """What the program finds for a parameter, from tables of the angle; that forward derivatives were there."""
+    """Return the value that the program finds for a parameter from a table of angles. Check that it used forward
+    derivatives."""
     (folder / "arm.urdf").write_text(scene)
     numpy.savetxt(folder / "data.csv", numpy.column_stack([times, angles]), delimiter=",", comments="", fmt="%.17g",
                   header="time,joint/h/position")
@@ -32,8 +33,8 @@ def identified(folder, scene, times, angles, name):
     return estimate["estimate"]
 
 
-# A run stands for up to a step at each reversal: so much is it late from there on. What the estimate is off by is at
-# most that error over how much the motion depends on the friction, both in the norm of the fit.
+# At each reversal, a run stands still for up to one step, and is late by this time from there on. The error of the
+# estimate is at most this error divided by the sensitivity of the motion to the friction, both in the norm of the fit.
 @pytest.mark.parametrize("scheme", ["em", "edmc2"])
 def test_coulomb_friction_is_recovered(tmp_path, scheme):
     truth, times = 1.1, numpy.linspace(0, 3, 301)
@@ -46,7 +47,7 @@ def test_coulomb_friction_is_recovered(tmp_path, scheme):
     assert found == pytest.approx(truth, abs=bound)
 
 
-# Hits give back the law's speed to within 5 % of what came in: what comes behind is off by that.
+# The rebound speed follows the law to within 5 % of the incoming speed. The motion after the hit has this error.
 def test_place_of_a_stop_is_recovered(tmp_path):
     truth, times = -0.43, numpy.linspace(0, 0.6, 301)
     angles, rates = bouncing(START, STEP, times, lower=truth)

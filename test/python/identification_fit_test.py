@@ -1,4 +1,4 @@
-"""The search and its statistics, on formulas and on a rod."""
+"""Test the search of the identification and its statistics, on formulas and on a rod."""
 
 import numpy
 import pytest
@@ -34,10 +34,10 @@ def test_standard_errors_and_correlations_are_those_of_the_formula():
     exact = numpy.column_stack([numpy.exp(-rate * times), -size * times * numpy.exp(-rate * times)])
     covariance = result.factor**2 * sigma**2 * numpy.linalg.inv(exact.T @ exact)
     errors = numpy.sqrt(numpy.diag(covariance))
-    # One-sided differences are off by their length, 1e-4 of the unknowns, times curvature over slope.
+    # One-sided differences have a relative error of their length, 1e-4 of the unknowns, times curvature over slope.
     assert result.certainty.standard_errors == pytest.approx(errors, rel=1e-3)
     assert result.certainty.correlations[0, 1] == pytest.approx(covariance[0, 1] / errors.prod(), abs=1e-3)
-    # The sum of squares is distributed as chi squared.
+    # The sum of squares has a chi-squared distribution.
     count = len(times) - 2
     assert chi2.ppf(CHANCE, count) < result.factor**2 * count < chi2.ppf(1 - CHANCE, count)
     assert result.is_converged and not result.at_limit.any() and not report.doubts(experiment, result)
@@ -57,7 +57,7 @@ def test_noise_that_is_not_known_is_found():
     assert chi2.ppf(CHANCE, count - 2) < (count - 2) * (result.noise[0] / sigma) ** 2 < chi2.ppf(1 - CHANCE, count - 2)
     assert result.factor == pytest.approx(1, rel=1e-3)
     given = fit(Formula(decay, DECAY, (2.0, 1.5), sigma, times, numpy.random.default_rng(1), sigma))
-    # One column: its weight does not matter; a search ends within a hundredth of the standard errors.
+    # With one column, its weight does not matter. A search ends within a hundredth of the standard errors.
     assert (abs(result.values - given.values) < 0.02 * given.certainty.standard_errors).all()
 
 
@@ -68,7 +68,7 @@ def test_what_cannot_be_told_apart_is_said():
     assert result.certainty.undetermined == [[0, 1]]
     assert numpy.isfinite(result.certainty.standard_errors).tolist() == [False, False, True]
     assert result.values[0] * result.values[1] == pytest.approx(1.0, rel=1e-6)
-    assert any("do not tell 'a' and 'b' apart" in doubt for doubt in report.doubts(experiment, result))
+    assert any("cannot distinguish 'a' and 'b'" in doubt for doubt in report.doubts(experiment, result))
     report.text(experiment, result)
 
 
@@ -85,7 +85,7 @@ def test_high_correlations_are_said():
     random = numpy.random.default_rng(0)
     experiment = Formula(lambda t, a, b: a * t + b, unknowns, (1.0, 1.0), 0.01, times, random, 0.01)
     result = fit(experiment)
-    # Of a straight line: minus the mean time over its root mean square.
+    # The correlation for a straight line: minus the mean time over its root mean square.
     expected = -times.mean() / numpy.sqrt((times**2).mean())
     assert result.certainty.correlations[0, 1] == pytest.approx(expected, abs=1e-6)
     assert any("'a' and 'b' are hard to tell apart: their correlation is -0.99" in doubt
@@ -97,13 +97,13 @@ def test_limits_are_kept_and_said():
     result = fit(experiment)
     assert result.values[1] <= 1 and result.at_limit.tolist() == [False, True]
     doubts = report.doubts(experiment, result)
-    assert "'rate' is at its limit: standard errors do not hold" in doubts
+    assert "'rate' is at its limit: standard errors are not valid" in doubts
     assert any("residuals of 'y' are" in doubt for doubt in doubts)
-    assert any("go together from one to the next" in doubt for doubt in doubts)
+    assert any("successive residuals" in doubt for doubt in doubts)
 
 
 def test_the_search_goes_round_what_cannot_be_simulated():
-    # From there the first step would go beyond the limit.
+    # From this start, the first step of the search goes beyond the limit.
     experiment = Formula(failing_beyond(1.6), [unknown("size", 1.0), unknown("rate", 0.1)], (2.0, 1.5), 0.01)
     result = fit(experiment)
     assert result.is_converged and result.values == pytest.approx((2.0, 1.5), rel=1e-6)
@@ -124,7 +124,7 @@ def test_the_best_is_kept_where_there_are_no_derivatives():
         return decay(times, size, rate)
 
     result = fit(Formula(function, [unknown("size", 1.0), unknown("rate", 0.5)], truth, 0.01))
-    assert not result.is_converged and result.ending.startswith("not converged: on neither side")
+    assert not result.is_converged and result.ending.startswith("not converged: simulations fail on both sides")
     assert result.values.tolist() == [1.0, 0.5] and numpy.isinf(result.certainty.standard_errors).all()
 
 
@@ -161,13 +161,13 @@ def test_differences_are_derivatives(rod):
         return (experiment.simulate(values + change) - experiment.simulate(values - change)) / (2 * step)
 
     for i in range(2):
-        # Halved steps quarter the error of central differences: what they tend to.
+        # Halving the step quarters the error of central differences, so the limit can be extrapolated.
         step = 1e-2 * values[i]
         limit = (4 * central(i, step / 2) - central(i, step)) / 3
         errors = [abs((experiment.simulate(values + size * numpy.eye(2)[i]) - experiment.simulate(values)) / size
                       - limit).max() for size in (1e-2 * values[i], 1e-3 * values[i])]
-        # Of first order: one-sided ones lose a tenth of their error with a tenth of the length, give or take the next
-        # order, a hundredth of this.
+        # The error of one-sided differences is of first order: a tenth of the length gives a tenth of the error. The
+        # next order changes this ratio by about a hundredth.
         assert errors[0] / errors[1] == pytest.approx(10, rel=0.1)
 
 
@@ -204,7 +204,8 @@ def test_differences_stand_in_where_there_are_no_forward_derivatives(rod):
 
 
 def test_standard_errors_cover_the_truth(rod):
-    """Each in 95 of 100 runs, and errors in units of standard errors have the variance 1."""
+    """Check that intervals of each parameter cover the truth in 95 of 100 runs, and that errors in units of standard
+    errors have variance 1."""
     runs, sigma, truth = 100, 0.01, numpy.array(list(TRUE.values()))
     random = numpy.random.default_rng(2)
     experiment = rod_experiment(rod, numpy.arange(1, 76) * 0.02, sigma, step=0.02)
@@ -238,7 +239,7 @@ def test_efforts_have_the_impulse_of_their_history():
     edges = numpy.linspace(0, 2, 41)
     line = EffortHistory([0.1, 0.73, 1.9], [1.0, 3.0, -2.0], [3.0, -2.0], 1.0)
     hold = EffortHistory([0.1, 0.73, 1.9], [1.0, 3.0, -2.0], before=1.0)
-    # Trapezia, and rectangles; before and after the knots it is constant.
+    # Trapezoids and rectangles. Before the first and after the last knot, the effort is constant.
     assert line.means(edges).sum() * 0.05 == pytest.approx(0.1 + 0.63 * 2 + 1.17 * 0.5 - 0.1 * 2, rel=1e-13)
     assert hold.means(edges).sum() * 0.05 == pytest.approx(0.1 + 0.63 + 1.17 * 3 - 0.1 * 2, rel=1e-13)
     assert line.means(edges)[5] == pytest.approx(1 + 2 * (0.275 - 0.1) / 0.63, rel=1e-12)
@@ -250,7 +251,7 @@ def test_efforts_are_commanded(rod):
     simulation = flexarm.Simulation(flexarm.read_scene(rod, parameters=TRUE), tolerance=1e-10)
     simulation.run(50, numpy.array([0.0]))
     simulation.run(50, numpy.array([2.0]))
-    # What is left of the impulse of 0 N m is round-off of sums.
+    # The remaining impulse of the effort of 0 N m is round-off of sums.
     assert experiment.simulate(list(TRUE.values()))[0] == pytest.approx(simulation.positions[0], rel=1e-12)
 
 
@@ -258,7 +259,7 @@ def test_steps_end_where_measurements_are():
     grid = numpy.arange(101) * 0.0125
     assert choose_step(grid, 1e-2) == pytest.approx(0.00625, rel=1e-12)
     assert choose_step(grid[::3], 1e-2) == pytest.approx(0.009375, rel=1e-12)
-    assert choose_step(numpy.append(grid, 1.2501), 1e-2) is None  # of 0.1 ms
+    assert choose_step(numpy.append(grid, 1.2501), 1e-2) is None  # steps of 0.1 ms would be needed
     assert choose_step(numpy.append(grid, 1.2574), 1e-2) is None
     assert choose_step(numpy.array([0.0]), 1e-2) is None
     sampling = Sampling([grid, grid[::4]], 0.00625)
@@ -278,5 +279,6 @@ def test_between_steps_the_error_is_of_fourth_order():
 
     errors = [error(step) for step in (0.01, 0.005, 0.0025)]
     slopes = numpy.log2(numpy.divide(errors[:-1], errors[1:]))
-    # The next order is a few steps of 0.03 rad beside 1 at most: the slope is off by some hundredths, and then by half.
+    # The next order is a few steps of 0.03 rad compared with 1: the slope is off by some hundredths at first, and then
+    # by half of this.
     assert slopes == pytest.approx(4, abs=0.1)

@@ -1,4 +1,4 @@
-"""Plans, measurements and commands: what they say, and what is wrong with them."""
+"""Test plans, measurements and commands of the identification: what they contain, and the messages of errors."""
 
 import numpy
 import pytest
@@ -57,15 +57,15 @@ until: 2
     ("parameters:\n  mass: {begin: 1}\n" + COLUMNS,
      ":2: parameters: mass: expected a key of start, min, max, scale, got 'begin'"),
     ("parameters:\n  offset:\n" + COLUMNS,
-     ":2: parameters: offset: expected a key 'scale', as it starts at zero: a change of it that matters"),
+     ":2: parameters: offset: expected a key 'scale', since it starts at zero: the size of a significant change"),
     ("parameters: {mass: }\ncolumns: {a: {noise: 0}}\n", ":2: columns: a: noise: expected a number > 0, got '0'"),
-    ("parameters: {mass: }\n", ": expected columns that were measured, below 'columns'"),
-    (COLUMNS, ": expected something to be found, below 'parameters' or 'initial'"),
+    ("parameters: {mass: }\n", ": expected measured columns, below 'columns'"),
+    (COLUMNS, ": expected at least one unknown, below 'parameters' or 'initial'"),
     ("initial: {hinge: 3}\n" + COLUMNS, ":1: initial: hinge: expected a name like JOINT/position or JOINT/velocity"),
     ("initial: {hinge/position: {}}\n" + COLUMNS,
      ":1: initial: hinge/position: expected a key 'start': the value with which the search begins"),
     ("initial: {hinge/position: far}\n" + COLUMNS,
-     ":1: initial: hinge/position: expected a number, where it is known, or a mapping with start, where it is not, "
+     ":1: initial: hinge/position: expected a number if it is known, or a mapping with start if it is unknown, "
      "got 'far'"),
     ("parameters: {mass: }\n" + COLUMNS + "begin: soon\n",
      ":3: begin: expected 'first', or the time of the data at which the scene starts [s], got 'soon'"),

@@ -1,4 +1,4 @@
-"""`flexarm identify`: files, bags, signals, exit status."""
+"""Test the program `flexarm identify`: files, bags, signals, exit status."""
 
 import json
 import os
@@ -55,8 +55,8 @@ def test_the_example_of_the_documentation(tmp_path):
     for unknown, truth in zip(found["unknowns"], (70e9, 0.1, 0.5)):
         assert unknown["estimate"] == pytest.approx(truth, rel=0.01)
         assert abs(unknown["estimate"] - truth) < 4 * unknown["standard_error"]
-    (report,) = re.findall(r"^What it prints:\n\n```\n(.*?)^```", text_of("identify.md"), re.DOTALL | re.MULTILINE)
-    # Digits depend on the processor.
+    (report,) = re.findall(r"^The output is:\n\n```\n(.*?)^```", text_of("identify.md"), re.DOTALL | re.MULTILINE)
+    # Digits depend on the processor, so only words are compared.
     report, printed = (re.sub(r"[-0-9.e+]+", "#", text) for text in (report, printed[printed.index("unknown "):]))
     assert report.split() == printed.split()
     assert (tmp_path / "measured_arm_fitted.png").stat().st_size > 10000
@@ -70,7 +70,7 @@ def test_only_values_of_parameters_change(rod):
     assert after == before.replace('value="1.5"', 'value="%r"' % found["mass"]).replace(
         'value="0.2"', 'value="%r"' % found["damping"])
     assert {p.name: p.value for p in flexarm.read_scene("rod_fitted.urdf").parameters} == {**found, "nothing": 1.0}
-    # Without noise; the search ends where residuals are round-off of Newton's tolerance.
+    # Without noise, the search ends when the residuals are round-off of Newton's tolerance.
     assert found == pytest.approx({"mass": 2, "damping": 0.5}, rel=1e-6)
     assert sorted(os.listdir(rod)) == ["data.csv", "plan.yaml", "rod.urdf", "rod_fitted.csv", "rod_fitted.json",
                                        "rod_fitted.png", "rod_fitted.urdf"]
@@ -82,7 +82,7 @@ def test_a_bag_gives_what_a_table_gives(rod):
     for name in ("data.csv", "data.bag"):
         assert command_line("identify", "rod.urdf", name, "plan.yaml", "--quiet") == (0, "")
         os.rename("rod_fitted.json", name + ".json")
-    # Stamps are whole nanoseconds of a motion of about a second.
+    # Stamps are whole nanoseconds, and the motion takes about a second.
     assert estimates("data.bag.json") == pytest.approx(estimates("data.csv.json"), rel=1e-8)
 
 
@@ -106,7 +106,8 @@ def test_commands_of_a_bag_are_those_of_files(rod):
         bag.write("/joint_force_command", command, rospy.Time(epoch, 200_000_000))
         for time, position in rows:
             message = JointState(name=["other", "hinge"], position=[9.0, position])
-            message.header.stamp = rospy.Time(epoch, round(time * 1e9)) if time < 0.995 else rospy.Time(epoch + 1, 0)
+            nanoseconds = int(round(time * 1e9))
+            message.header.stamp = rospy.Time(epoch, nanoseconds) if time < 0.995 else rospy.Time(epoch + 1, 0)
             bag.write("/arm/joint_states", message, message.header.stamp)
     found = {}
     for name, data, commands in [
@@ -120,13 +121,14 @@ def test_commands_of_a_bag_are_those_of_files(rod):
         found[name] = estimates()
     assert found["schedule"] == pytest.approx({"mass": 2, "damping": 0.5}, rel=1e-6)
     assert found["table"] == pytest.approx(found["schedule"], rel=1e-8)
-    # At that epoch a float of seconds is rounded to a quarter of a microsecond: of the time and of efforts' impulses.
+    # At this epoch, a double of seconds is rounded to a quarter of a microsecond, which changes the times and the
+    # impulses of efforts.
     assert found["bag"] == pytest.approx(found["schedule"], rel=1e-5)
 
 
 @pytest.mark.parametrize("arguments, said", [
-    ("rod.urdf data.csv plan.yaml --output rod.urdf", "--output: 'rod.urdf' would be overwritten, which is read"),
-    ("rod.urdf data.csv plan.yaml --output data.urdf", "--output: 'data.csv' would be overwritten, which is read"),
+    ("rod.urdf data.csv plan.yaml --output rod.urdf", "--output would overwrite 'rod.urdf', which is read"),
+    ("rod.urdf data.csv plan.yaml --output data.urdf", "--output would overwrite 'data.csv', which is read"),
     ("rod.urdf data.csv plan.yaml --output none/a.urdf", "--output: 'none/a.urdf' cannot be written"),
     ("rod.urdf data.csv plan.yaml --set mass", "--set: must be NAME=VALUE, got 'mass'"),
     ("rod.urdf data.csv plan.yaml --set length=3", "'length'"),
@@ -151,7 +153,7 @@ def test_wrong_usage_is_refused(rod, arguments, said):
     ("columns: {joint/hinge/*: {data: joint/hinge/position}}", "expected the name of one column, got those of"),
     ("columns: {joint/hinge/position: }\ninitial: {elbow/position: 3}", "elbow"),
     ("columns: {joint/hinge/position: }\nbegin: -1e9",
-     "'begin' of the plan is the time in them at which the scene starts"),
+     "'begin' of the plan must be the measured time at which the scene starts"),
 ])
 def test_what_the_scene_does_not_have_is_refused(rod, plan, said):
     measure("data.csv")
@@ -165,13 +167,13 @@ def test_a_start_that_cannot_be_simulated_is_said(rod):
     text = (rod / "rod.urdf").read_text().replace('step="0.01"', 'step="0.01" max_iterations="1" max_halvings="0"')
     (rod / "rod.urdf").write_text(text)
     status, printed = command_line("identify", "rod.urdf", "data.csv", "plan.yaml")
-    assert status == 1 and "with the values that the search begins with nothing can be simulated: " in printed
+    assert status == 1 and "the scene cannot be simulated with the start values of the search: " in printed
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_keeps_the_best_so_far(rod, number):
     measure("data.csv")
-    # Steps so short that the search takes some seconds.
+    # The steps are so short that the search takes some seconds.
     (rod / "plan.yaml").write_text(PLAN + "step: 2e-5\n")
     command = [os.environ["FLEXARM_PROGRAM"], "identify", "rod.urdf", "data.csv", "plan.yaml", "--workers", "1"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, universal_newlines=True) as process:
@@ -179,7 +181,7 @@ def test_a_signal_keeps_the_best_so_far(rod, number):
         process.send_signal(number)
         _, said = process.communicate(timeout=100)
     assert line.startswith("iteration 1, 3 simulations: ")
-    assert process.returncode == 128 + number and "interrupted; the best so far is kept" in said
+    assert process.returncode == 128 + number and "interrupted; the best values so far are kept" in said
     assert set(estimates()) == {"mass", "damping"}
     with open("rod_fitted.json", encoding="utf-8") as file:
         assert not json.load(file)["converged"]

@@ -1,4 +1,4 @@
-"""What is to be seen of a simulation, and what it can be told."""
+"""Test what can be read from a simulation, and which commands it takes."""
 
 import numpy
 import pytest
@@ -42,10 +42,11 @@ def test_beams(arm):
     assert points.shape == (9,)  # 4 elements of order 2
     assert points["pose"].shape == (9, 7) and points["strain"].shape == points["resultant"].shape == (9, 6)
     numpy.testing.assert_allclose(points["arc_length"], numpy.linspace(0, 1, 9), atol=1e-15)
-    numpy.testing.assert_allclose(points["pose"][-1], arm.tip_poses[1], rtol=0, atol=4e-16)  # quaternions are made anew
+    # Quaternions are computed again
+    numpy.testing.assert_allclose(points["pose"][-1], arm.tip_poses[1], rtol=0, atol=4e-16)
     middle = arm.section("upper_arm", points["arc_length"][4])
     assert middle.shape == () and set(middle.dtype.names) == set(points.dtype.names)
-    # The same interpolation at the same place, to round-off of the arc length.
+    # The same interpolation at the same place, to within round-off of the arc length.
     numpy.testing.assert_allclose(middle["pose"], points["pose"][4], atol=1e-14)
     assert len(arm.beam_points("upper_arm", between=1)) == 17
     assert len(arm.beam_points("payload")) == 0
@@ -99,7 +100,7 @@ def test_servos():
     with pytest.raises(ValueError, match="mode: expected 'effort', 'velocity' or 'position', got 'sideways'"):
         simulation.switch_mode("axis_1", "sideways")
     with pytest.raises(ValueError):
-        simulation.switch_mode("axis_1", "velocity")  # the scene has no gains for it
+        simulation.switch_mode("axis_1", "velocity")  # the scene has no gains for this mode
 
 
 def test_only_servos_take_set_points(pendulum):
@@ -108,11 +109,11 @@ def test_only_servos_take_set_points(pendulum):
 
 
 def test_wrenches(pendulum):
-    # In balance with gravity on both rods, for a moment: 1 kg each.
+    # The forces balance gravity on both rods, for a while: 1 kg each.
     pendulum.apply_wrenches([flexarm.Wrench("upper_arm", (0, 0, 9.81), at=(0.5, 0, 0)),
                              flexarm.Wrench(2, [0, 0, 9.81], at=numpy.array([0.5, 0, 0]))])
     pendulum.run(10)
-    # Newton's tolerance is 1e-8; its square is what a step leaves.
+    # Newton's tolerance is 1e-8, so a step leaves an error of its square.
     numpy.testing.assert_allclose(pendulum.positions, 0, atol=1e-10)
     pendulum.apply_wrenches([flexarm.Wrench("forearm", at=(1, 0, 0), target=(2, 0, 1), stiffness=1000, damping=1)])
     pendulum.run(10)

@@ -1,4 +1,4 @@
-"""The package, beside the messages that share its name."""
+"""Test the Python package, next to the messages that share its name."""
 
 import os
 import pydoc
@@ -41,7 +41,7 @@ def test_the_version_is_that_of_the_package():
 
 def test_everything_is_explained():
     for type_ in (flexarm.Simulation, flexarm.LinearModel, flexarm.Scene, flexarm.State, flexarm.StepResult,
-                  flexarm.Environment):
+                  flexarm.Environment, flexarm.Run):
         for name, member in vars(type_).items():
             if not name.startswith("_") and (callable(member) or isinstance(member, property)):
                 text = pydoc.getdoc(member)

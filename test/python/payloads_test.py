@@ -1,4 +1,4 @@
-"""Links that are attached and detached, models that come and go."""
+"""Test links that are attached and detached, and models that are added and removed."""
 
 import numpy
 import pytest
@@ -9,8 +9,8 @@ from conftest import hinged_rod
 BALL = """
 <robot name="ball"> <link name="ball"> <inertial> <mass value="0.5"/>
   <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/> </inertial> </link> </robot>"""
-INERTIA, SPEED = 0.1, 2.0  # of the rod about its hinge [kg m^2, rad/s]
-TOGETHER = INERTIA + 0.01 + 0.5  # with the ball at 1 m
+INERTIA, SPEED = 0.1, 2.0  # rod: about its hinge [kg m^2], speed [rad/s]
+TOGETHER = INERTIA + 0.01 + 0.5  # inertia with the ball at 1 m
 
 
 @pytest.fixture
@@ -55,14 +55,14 @@ def test_models_come_at_a_pose_with_a_velocity_and_a_name(rod):
 def test_states_of_before_are_refused(rod):
     before, other = rod.snapshot(), flexarm.Simulation(rod.scene)
     spawn_ball(rod, position=(1, 0, 0))
-    with pytest.raises(ValueError, match="links have come or gone"):
+    with pytest.raises(ValueError, match="links were added or removed"):
         rod.restore(before)
     after = rod.snapshot()
     rod.run(100)
     rod.restore(after)
     with pytest.raises(ValueError):
         other.restore(after)
-    with pytest.raises(ValueError, match="links have come or gone since"):
+    with pytest.raises(ValueError, match="not available after links were added"):
         rod.sensitivities([])
 
 
@@ -75,4 +75,4 @@ def test_what_cannot_be_is_said(rod):
         rod.remove("nose")
     spawn_ball(rod)
     with pytest.raises(ValueError, match="ball"):
-        spawn_ball(rod)  # its names are taken
+        spawn_ball(rod)  # its names are in use

@@ -1,4 +1,4 @@
-"""Runs: the bits of the command line's, arrays that are not copied, failures."""
+"""Test runs: bits equal to those of the command line, arrays that are not copied, failures."""
 
 import pickle
 import tracemalloc
@@ -64,7 +64,7 @@ def test_efforts_of_each_step(arm):
     for n in range(30):
         other.command_efforts(efforts[n])
         other.step()
-        # What is put out includes the joint's damping: the command is the same, bit for bit.
+        # The effort in the results includes the joint's damping. The command is the same, bit for bit.
         assert bits(rows[n, 1:]) == bits(other.efforts)
     assert bits(arm.row()) == bits(other.row())
 
@@ -93,13 +93,13 @@ def test_arrays_are_not_copied(pendulum):
     efforts = numpy.zeros((2000, 2))
     out = numpy.empty((2000, 3))
     record = ["joint/*/position"]
-    pendulum.run(1, record=record)  # finds the columns
-    # numpy tells tracemalloc of its memory.
+    pendulum.run(1, record=record)  # looks up the columns
+    # numpy reports its memory to tracemalloc.
     assert traced_peak(lambda: pendulum.run(2000, efforts, record=record, out=out)) < efforts.nbytes / 4
     results = pendulum.run(2000, efforts, record=record, out=out)
     assert numpy.shares_memory(results, out) and results.ctypes.data == out.ctypes.data
     assert traced_peak(lambda: pendulum.run(2000, efforts, record=record)) < 1.25 * out.nbytes
-    # What is no array of doubles is converted.
+    # Arrays of other types than double are converted.
     assert traced_peak(lambda: pendulum.run(2000, efforts.astype("f4"))) > efforts.nbytes
 
 
@@ -153,7 +153,7 @@ def test_failed_steps_say_what_the_command_line_says(tmp_path, failing_scene):
     copy = pickle.loads(pickle.dumps(error))
     assert (str(copy), copy.time, copy.reason) == (str(error), error.time, error.reason)
     assert bits(copy.rows) == bits(error.rows)
-    # Again, one step; then the simulation is of use.
+    # The step fails again. After a reset the simulation can be used.
     with pytest.raises(flexarm.StepError) as again:
         simulation.step()
     assert str(again.value) == str(error)

@@ -1,4 +1,4 @@
-"""Scenes: what they say, and what is wrong with them."""
+"""Test scenes: their content, and the messages of errors."""
 
 import warnings
 

@@ -1,4 +1,4 @@
-"""Sensitivities of runs, against differences of runs."""
+"""Test sensitivities of runs against differences of runs."""
 
 import numpy
 import pytest
@@ -26,7 +26,7 @@ def rows_of(efforts=None, **parameters):
 
 
 def difference(name, value, efforts=None):
-    """Of fourth order."""
+    """Return the derivative by differences of fourth order."""
     def quotient(way):
         return (rows_of(efforts, **{name: value + way}) - rows_of(efforts, **{name: value - way})) / (2 * way)
 
@@ -51,7 +51,7 @@ def test_derivatives_are_those_of_differences():
 
 
 def test_what_sensors_measure():
-    """Samples are taken of neighbours, too, with the same errors."""
+    """Check samples of sensors: the runs with other parameters that differences need have the same noise."""
     cell = '<sensor name="cell" kind="wrench" link="rod" rate="50" noise="0.05"/> <simulation>'
     text = ROD.replace("<simulation>", cell)
 
@@ -105,7 +105,7 @@ def test_every_other_step():
 
 @pytest.mark.parametrize("parameter, said", [
     ("weight", "unknown parameter 'weight': expected one of damping, mass, angle, elements"),
-    ("elements", "the run cannot be differentiated by parameter 'elements'"),
+    ("elements", "the run cannot be differentiated with respect to parameter 'elements'"),
 ])
 def test_parameters_that_have_none(parameter, said):
     with pytest.raises(ValueError, match=said):
@@ -115,12 +115,12 @@ def test_parameters_that_have_none(parameter, said):
 def test_run_that_has_begun():
     simulation = simulation_of()
     simulation.step()
-    with pytest.raises(ValueError, match="the simulation has moved, reset"):
+    with pytest.raises(ValueError, match="the simulation has moved; call reset"):
         simulation.sensitivities(["mass"])
     simulation.reset()
     sensitivities = simulation.sensitivities(["mass"])
     simulation.step()
-    with pytest.raises(RuntimeError, match="somebody else has moved the simulation"):
+    with pytest.raises(RuntimeError, match="the simulation was moved by other means"):
         sensitivities.step()
 
 

@@ -1,4 +1,4 @@
-"""Sensitivities of runs over stops and dry friction, against ODE solvers with events."""
+"""Test sensitivities of runs over stops and dry friction against ODE solvers with events."""
 
 import numpy
 import pytest
@@ -19,13 +19,13 @@ def angle_at(motion):
     return motion[0, -1]
 
 
-@pytest.mark.parametrize("until", [0.8, 1.6, 2.5, 3.5])  # before, after a reversal, after two, at rest
+@pytest.mark.parametrize("until", [0.8, 1.6, 2.5, 3.5])  # before, after one reversal, after two, at rest
 def test_dry_friction(until):
     exact = fourth_order(lambda way: angle_at(rubbing(1.5 + way, numpy.array([until]))[0]), 1e-4)
     for step in (1e-3, 1e-4):
         found, _ = sensitivity(rubbing_arm(step), "fc", until)
-        # A run stands for up to a step at each reversal; its derivative changes by up to 4.5 in a second, 5 of which
-        # the reversals themselves may bring about.
+        # At each reversal a run stands still for up to one step. The derivative changes by up to 4.5 per second, and
+        # the reversals themselves may add up to 5 per second.
         assert found == pytest.approx(exact, abs=2 * 5 * step)
 
 
@@ -35,7 +35,7 @@ def test_stop(step):
     found, events = sensitivity(bouncing_arm(step), "angle", 0.56)
     assert [own.what for own in events] == ["touches its stop", "leaves its stop"]
     assert {own.joint for own in events} == {"h"} and not any(own.doubt for own in events)
-    # Two terms of 1.5 that are opposite, and a run whose restitution is right to 5 %.
+    # The result is the sum of two opposite terms of size 1.5, and the restitution of the run is accurate to 5 %.
     assert found == pytest.approx(exact, abs=0.05 * 1.5)
     numpy.testing.assert_allclose(exact, {1e-3: -0.58524, 1e-4: -0.54070}[step], atol=1e-5)
 
@@ -43,7 +43,7 @@ def test_stop(step):
 def test_error_over_dry_friction_is_of_first_order():
     until = numpy.array([1.6])
     exact = fourth_order(lambda way: angle_at(rubbing(1.5 + way, until)[0]), 1e-4)
-    # Where in a step a reversal lies is a matter of luck: the worst of some steps that share no divisor.
+    # The place of a reversal within a step is random. Take the worst of some numbers of steps that share no divisor.
     worst = [max(abs(sensitivity(rubbing_arm(1.6 / steps), "fc", 1.6)[0] - exact) for steps in counts)
              for counts in ((401, 449, 503), (4001, 4507, 5003))]
     assert worst[1] < worst[0] / 5
@@ -61,11 +61,13 @@ TOUCHING = """<robot name="touching"> <parameter name="mu" value="0.3"/> <parame
 
 
 def test_friction_of_what_slides():
-    # From where its weight and the contact's stiffness, m (pi / 10 h)^2 on its corners, hold it: nothing settles.
+    # The block starts in equilibrium of its weight and the contact's stiffness, m (pi / 10 h)^2 on all corners, so that
+    # nothing settles.
     depth = 8 / (numpy.pi / 10e-3) ** 2
     found, events = sensitivity(TOUCHING.format(height=0.05 - depth), "mu", 0.5)
-    # It sticks in none of the first steps, over which friction sets in: the slip of a step is 4e-6 m at first, and the
-    # grip gives way by mu m g / k = 2.4e-5 m, so that it slides fully after some 5 steps.
+    # The block does not stick in any of the first steps, while friction builds up. The slip of a step is 4e-6 m at
+    # first, and the tangential contact gives way by mu m g / k = 2.4e-5 m. So the block slides fully after some 5
+    # steps.
     assert found == pytest.approx(-0.5 * 8 * 0.5**2, rel=2 * 5e-3 / 0.5)
     assert events == []
 
@@ -73,4 +75,4 @@ def test_friction_of_what_slides():
 def test_hits_are_doubtful():
     _, events = sensitivity(TOUCHING.format(height=0.06), "mu", 0.3)
     assert [(own.joint, own.what) for own in events][0] == ("block and floor", "hit each other")
-    assert all("in which part of one they hit" in own.doubt for own in events)
+    assert all("depends on the time of the hit" in own.doubt for own in events)

@@ -1,4 +1,4 @@
-"""States as values: snapshots, pickles, copies, files."""
+"""Test states as values: snapshots, pickles, copies, files."""
 
 import copy
 import pickle
@@ -11,7 +11,7 @@ from conftest import bits, command_line, example
 
 @pytest.fixture
 def exact_arm():
-    """Goes on bit for bit from a state that is restored."""
+    """Return an arm that continues bit for bit from a restored state."""
     return flexarm.Simulation(flexarm.read_scene(example("flexible_two_link_arm")), reuse_factorisation=False)
 
 
@@ -37,7 +37,7 @@ def test_pickles(exact_arm):
     state = exact_arm.snapshot()
     text = pickle.dumps(state)
     first = motion(exact_arm)
-    # In another simulation of the same scene, as another process has one.
+    # Another simulation of the same scene, as in another process.
     other = flexarm.Simulation(exact_arm.scene, reuse_factorisation=False)
     other.restore(pickle.loads(text))
     assert motion(other) == first
@@ -66,7 +66,7 @@ def test_copies_go_their_own_way(exact_arm):
         first = motion(exact_arm)
         assert other.time < exact_arm.time
         assert motion(other) == first
-        # Snapshots of one fit the other.
+        # A snapshot of one simulation can be restored in the other.
         other.restore(state)
         exact_arm.restore(state)
         assert motion(other) == first

@@ -1,4 +1,4 @@
-"""Sweeps on the workers of a Dask scheduler."""
+"""Test sweeps on the workers of a Dask scheduler."""
 
 import contextlib
 import os
@@ -22,7 +22,7 @@ def free_port():
 
 @contextlib.contextmanager
 def programs(*commands):
-    """Runs them until the end of the block."""
+    """Run programs until the end of the block."""
     running = [subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for words in commands]
     try:
         yield running
@@ -34,7 +34,7 @@ def programs(*commands):
 
 def scheduler(address, *options):
     host, port = address[len("tcp://"):].split(":")
-    # A single death of its worker is enough to give up a run.
+    # The scheduler gives up a run after its worker has died once.
     setting = "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=0"
     return ["env", setting, "dask-scheduler", "--host", host, "--port", port, "--no-dashboard", *options]
 
@@ -72,7 +72,7 @@ def test_two_workers_give_the_results_of_processes(tmp_path, address):
         for name in os.listdir(tmp_path / "here_histories"):
             there, here = (tmp_path / (stem + "_histories") / name for stem in ("plan_results", "here"))
             assert there.read_bytes() == here.read_bytes()
-        # Runs that fail are rows, scenes that are impossible too.
+        # Failed runs are rows in the results, and so are impossible scenes.
         plan_of(tmp_path, """
             design: {kind: rows, rows: [{kick: 0}, {kick: 1e4}]}
             until: 2

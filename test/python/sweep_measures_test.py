@@ -1,4 +1,4 @@
-"""Measures of sweeps, and the expressions in them."""
+"""Test measures of sweeps, and the expressions in them."""
 
 import math
 
@@ -50,16 +50,16 @@ def test_what_is_not_finite_is_no_error():
 
 
 @pytest.mark.parametrize("text, said", [
-    ("b/x", "'b/x' is no column and no parameter"),
-    ("2*velocity", "'velocity' is no column and no parameter"),
-    ("open(a)", "'open' is none of the functions"),
+    ("b/x", "'b/x' is neither a column nor a parameter"),
+    ("2*velocity", "'velocity' is neither a column nor a parameter"),
+    ("open(a)", "'open' is not one of the functions"),
     ("abs(a, a)", "abs(): expected 1 argument, got 2"),
     ("hypot(a)", "hypot(): expected 2 arguments, got 1"),
     ("a +", "expected an expression of columns, got 'a +'"),
     ("a; a", "expected an expression of columns"),
     ("", "expected an expression of columns"),
     ("a.real", "expected numbers, columns"),
-    ("__import__('os')", "'__import__' is none of the functions"),
+    ("__import__('os')", "'__import__' is not one of the functions"),
     ("(lambda: 1)()", "expected numbers, columns"),
     ("[a for a in a]", "expected numbers, columns"),
     ("'text'", "expected numbers, columns"),
@@ -72,7 +72,7 @@ def test_what_is_not_finite_is_no_error():
     ("a @ a", "expected numbers, columns"),
     ("-" * 5000 + "1", "expected"),
     ("(" * 5000, "expected an expression of columns"),
-    ("+".join(["a"] * 200), "expected at most 100 operations inside of each other"),
+    ("+".join(["a"] * 200), "expected at most 100 nested operations"),
     ("a\0", "expected"),
 ])
 def test_nothing_else_is_an_expression(text, said):
@@ -94,16 +94,16 @@ def measured(text, columns=None):
     ("{maximum: a, to: 1}", 1),
     ("{minimum: a}", -3),
     ("{minimum: a, from: 2, to: 4}", 2),
-    ("{mean: a/xy}", -2),                                       # of a line: in the middle
+    ("{mean: a/xy}", -2),                                       # a line: its middle value
     ("{mean: a/xy, from: 2}", -3),
     ("{mean: mass}", 2),
-    ("{mean: time, from: 2, to: 2}", 2),                        # of one row
+    ("{mean: time, from: 2, to: 2}", 2),                        # one row only
     ("{rms: mass}", 2),
-    ("{rms: time, from: 0, to: 1}", math.sqrt(0.5)),            # by trapezoids, of a row at 0 and one at 1
+    ("{rms: time, from: 0, to: 1}", math.sqrt(0.5)),            # trapezoidal rule over a row at 0 and one at 1
     ("{final: a*time}", 8),
     ("{value: time, at: 3.25}", 3.25),
     ("{value: a, at: 0.5}", -1),
-    ("{settling_time: a, band: 0.5}", 2),                       # to where it ends
+    ("{settling_time: a, band: 0.5}", 2),                       # until its end
     ("{settling_time: a, band: 6}", 0),
     ("{settling_time: a, band: 6, from: 1}", 1),
     ("{settling_time: a/x, target: 16, band: 1}", 4),

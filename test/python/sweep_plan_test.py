@@ -1,9 +1,10 @@
-"""Plans of sweeps: every design, commands, and what is wrong with them."""
+"""Test plans of sweeps: every design, commands, and the messages of errors."""
 
 import math
 
 import numpy
 import pytest
+import scipy.stats
 
 import flexarm
 from flexarm.sweep.commands import Pulse, effort_rows
@@ -47,12 +48,17 @@ def sampled(folder, kind, runs=64, seed="seed: 3"):
 
 
 def parts(rows):
-    """Where values are in their ranges, from 0 to 1, shape (runs, 3)."""
+    """Return the relative positions of values in their ranges, from 0 to 1, shape (runs, 3)."""
     effort, mass, kick = numpy.transpose(rows)
     return numpy.transpose([(effort + 2) / 4, (numpy.log10(mass) + 1) / 2, (kick + 0.5) / 4])
 
 
-@pytest.mark.parametrize("kind", ["latin_hypercube", "sobol", "random"])
+with_qmc = pytest.mark.skipif(
+    not hasattr(scipy.stats, "qmc"), reason="these designs need scipy 1.7 or later")
+
+
+@pytest.mark.parametrize("kind", [pytest.param("latin_hypercube", marks=with_qmc),
+                                  pytest.param("sobol", marks=with_qmc), "random"])
 def test_samples_are_in_their_ranges_and_the_same_for_the_same_seed(tmp_path, kind):
     rows = sampled(tmp_path, kind).rows
     assert len(rows) == 64 and len(set(rows)) == 64
@@ -62,22 +68,26 @@ def test_samples_are_in_their_ranges_and_the_same_for_the_same_seed(tmp_path, ki
     assert sampled(tmp_path, kind, seed="").rows == sampled(tmp_path, kind, seed="seed: 0").rows
 
 
+@with_qmc
 def test_a_latin_hypercube_has_one_run_in_each_slice(tmp_path):
     slices = numpy.floor(64 * parts(sampled(tmp_path, "latin_hypercube").rows)[:, :2])
     for parameter in slices.T:
         assert sorted(parameter) == list(range(64))
 
 
+@with_qmc
 def test_sobol_points_are_even(tmp_path):
-    """A power of two of them has one in each interval of that size, and as many in each quarter of two parameters."""
+    """Check Sobol points: of 2^n points, each of 2^n equal intervals has one, and each quarter of two parameters has
+    equally many."""
     position = parts(sampled(tmp_path, "sobol").rows)
     for parameter in position.T[:2]:
         assert sorted(numpy.floor(64 * parameter)) == list(range(64))
     quarters = numpy.floor(2 * position[:, 0]) + 2 * numpy.floor(2 * position[:, 1])
     assert [numpy.count_nonzero(quarters == quarter) for quarter in range(4)] == [16] * 4
-    assert numpy.count_nonzero(position[:, 2] < 0.25) == 16  # of a list: each value as often
+    assert numpy.count_nonzero(position[:, 2] < 0.25) == 16  # a list: each value equally often
 
 
+@with_qmc
 def test_fewer_sobol_points_are_the_first_of_more(tmp_path):
     assert sampled(tmp_path, "sobol", 50).rows == sampled(tmp_path, "sobol", 64).rows[:50]
     assert len(sampled(tmp_path, "sobol", 1).rows) == 1
@@ -128,8 +138,8 @@ def test_commands_may_be_a_file_of_the_demo(tmp_path):
           angle: {final: joint/hinge/position}
     """)
     (left, angle), = outcomes(plan)
-    tolerance = 20 * 1e-8 / 0.1  # Newton's in each of 20 steps [rad], as a velocity [rad/s]
-    assert abs(left) < tolerance  # impulses are kept where pulses are shorter than steps: 1 0.5 - 2 5 0.05 N m s
+    tolerance = 20 * 1e-8 / 0.1  # Newton's tolerance in each of 20 steps [rad], as a velocity [rad/s]
+    assert abs(left) < tolerance  # pulses shorter than steps keep their impulse: 1 0.5 - 2 5 0.05 N m s
     simulation = flexarm.Simulation(flexarm.read_scene(plan.job.scene, parameters={"mass": 4}))
     simulation.run(20, numpy.array([[1.0]] * 5 + [[-1.0]] * 5 + [[0.0]] * 10))
     assert abs(angle - simulation.positions[0]) < 20 * 1e-8
@@ -143,7 +153,7 @@ def test_efforts_of_a_step_are_the_mean_of_pulses():
 
 
 BROKEN = [
-    # what is replaced in GRID, by what, and what is said of which line
+    # Text in GRID, its replacement, and the expected message with its line.
     ("kind: grid", "kind: cube",
      "3: design/kind: expected one of [grid, rows, latin_hypercube, sobol, random], got 'cube'"),
     ("mass: [1, 2, 4]", "mas: [1, 2, 4]",
@@ -188,7 +198,7 @@ BROKEN = [
     ("final: joint/hinge/position", "settling_time: joint/hinge/position, band: 0",
      "9: measures/angle/band: expected a number > 0, got '0'"),
     ("joint/hinge/position", "joint/elbow/position",
-     "9: measures/angle/final: 'joint/elbow/position' is no column and no parameter"),
+     "9: measures/angle/final: 'joint/elbow/position' is neither a column nor a parameter"),
     ("until: 2", "until: }", "7: "),
 ]
 

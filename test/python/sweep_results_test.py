@@ -1,4 +1,4 @@
-"""The command `flexarm sweep`: its results, that survive whatever happens to it, and histories."""
+"""Test the command `flexarm sweep`: its results, which survive killed processes and full disks, and histories."""
 
 import csv
 import os
@@ -49,7 +49,7 @@ def test_results_are_those_of_single_runs_whatever_the_number_of_workers(folder)
 
 
 def keep(path, plan, outcome, order):
-    """Adds those of these runs that are missing; how many there were."""
+    """Add those of these runs that are missing. Return how many they are."""
     results = Results(path, plan)
     missing = [number for number in order if number in results.missing()]
     for number in missing:
@@ -106,7 +106,7 @@ def test_results_of_something_else_are_refused(folder):
         assert "--output would overwrite '%s'" % other in sweep(folder, "--output", other, status=2)[0]
         assert content(folder, other) == kept
     other = write(folder, "other.csv", "a,b\n1,2\n")
-    with pytest.raises(InputError, match="other.csv' is no file of results of a sweep"):
+    with pytest.raises(InputError, match="other.csv' is not a file of results of a sweep"):
         Results(other, plan_of(folder, GRID))
     assert content(folder, "other.csv") == b"a,b\n1,2\n"
     with pytest.raises(InputError, match="cannot write '.*none/x.csv': No such file or directory"):
@@ -138,7 +138,7 @@ def test_runs_that_fail_are_rows(tmp_path):
     rows = rows_of(tmp_path)
     assert [row["failure"] == "" for row in rows] == [True, False, True]
     assert rows[1]["angle"] == "nan" and "Newton" in rows[1]["failure"]
-    # What there was of it is in its history.
+    # The history contains the run up to the failure.
     names, history = read_csv(tmp_path / "plan_results_histories" / "run_000002.csv")
     assert 0.85 < history[-1, names.index("time")] < 1.1
     assert sweep(tmp_path)[1].startswith("plan_results.csv: 3 runs, 0 of them now")
@@ -153,7 +153,7 @@ def test_scenes_that_are_impossible_are_rows(tmp_path):
     sweep(tmp_path)
     for row in rows_of(tmp_path):
         if float(row["mass"]) == 4:
-            assert row["failure"].startswith("rod.urdf:6: ") and "less" in row["failure"]  # not where the file lies
+            assert row["failure"].startswith("rod.urdf:6: ") and "less" in row["failure"]  # not the folder of the file
         else:
             assert row["failure"] == ""
 
@@ -197,7 +197,7 @@ def test_the_same_history_has_the_same_bits(tmp_path):
         assert one == two
 
 
-# ---- what is killed
+# ---- killed processes
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
@@ -208,7 +208,7 @@ def undisturbed(tmp_path_factory):
 
 
 def begin(folder, *arguments):
-    """The program and, some rows later, the processes that it has started."""
+    """Start the program. When it has some rows, return it and the processes that it has started."""
     plan_of(folder, LONG)
     program = subprocess.Popen(command("rod.urdf", "plan.yaml", "--workers", 2, *arguments), cwd=folder,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
@@ -268,7 +268,7 @@ def test_a_killed_sweep_goes_on_where_it_was(tmp_path, undisturbed):
     program, workers = begin(tmp_path)
     program.kill()
     program.communicate(timeout=60)
-    wait_until(lambda: not any(b"spawn_main" in command_of(worker) for worker in workers))  # they notice it
+    wait_until(lambda: not any(b"spawn_main" in command_of(worker) for worker in workers))  # the workers notice it
     done = rows_in(tmp_path)
     _, summary = sweep(tmp_path)
     assert summary.startswith("plan_results.csv: 8 runs, %d of them now" % (8 - done))
@@ -281,7 +281,7 @@ def test_signals_end_a_sweep_that_goes_on_later(tmp_path, undisturbed, number):
     program.send_signal(number)
     said = program.communicate(timeout=60)[1]
     assert program.returncode == 128 + number
-    assert said == ("flexarm: %d of 8 runs are in 'plan_results.csv'; the same command does the others\n"
+    assert said == ("flexarm: %d of 8 runs are in 'plan_results.csv'; the same command makes the others\n"
                     "flexarm: interrupted\n" % rows_in(tmp_path))
     assert not any(b"spawn_main" in command_of(worker) for worker in workers)
     sweep(tmp_path, "--quiet")
@@ -309,7 +309,7 @@ def test_a_full_disk_is_told_and_repaired(folder):
     assert content(folder) == content(folder, "other.csv")
 
 
-# ---- what is said
+# ---- messages
 
 def test_a_terminal_shows_how_long_it_takes(folder):
     terminal, other_end = pty.openpty()

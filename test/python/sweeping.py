@@ -1,4 +1,4 @@
-"""What the tests of sweeps share: a scene of one rod, which is quick, and how to sweep over it."""
+"""Helpers of the tests of sweeps: a scene of one rod, which is quick, and functions that sweep over it."""
 
 import os
 import subprocess
@@ -8,8 +8,7 @@ from conftest import hinged_rod
 from flexarm.sweep.plan import read_plan
 from flexarm.sweep.run import perform
 
-# Steps after 1 s cannot be done with a kick of 1e4 N m: they may not be halved, and Newton's method is not given enough
-# iterations.
+# With a kick of 1e4 N m, steps after 1 s fail: they may not be halved, and Newton's method gets too few iterations.
 SCENE = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), """
     <gravity xyz="0 0 0"/>
     <integrator step="0.1" max_iterations="4" max_halvings="0"/>
@@ -32,7 +31,7 @@ GRID = """
       speed: {maximum: abs(joint/hinge/velocity)}
 """
 
-# Runs of some tenths of a second, which are there to be disturbed.
+# Runs of some tenths of a second, so that tests can interrupt them.
 LONG = """
     design:
       kind: random
@@ -55,7 +54,7 @@ def plan_of(folder, text, scene=SCENE):
 
 
 def outcomes(plan):
-    """Measures of each run, made here; none fails."""
+    """Yield the measures of each run, made in this process. Check that none fails."""
     for number, row in enumerate(plan.design.rows, 1):
         outcome = perform(plan.job, number, dict(zip(plan.design.names, row)), "")
         assert outcome.failure == ""
@@ -67,7 +66,7 @@ def command(*arguments):
 
 
 def sweep(folder, *arguments, status=0):
-    """Runs `flexarm sweep rod.urdf plan.yaml ...` there; what it says on the error and on the standard output."""
+    """Run `flexarm sweep rod.urdf plan.yaml ...` in the folder. Return its error output and its standard output."""
     result = subprocess.run(command("rod.urdf", "plan.yaml", *arguments), cwd=folder, check=False,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=120)
     assert result.returncode == status, result.stderr

@@ -1,4 +1,4 @@
-"""Simulations in threads: the same bits, and one thread at a time for each."""
+"""Test simulations in threads: the same bits, and only one thread at a time for each simulation."""
 
 import concurrent.futures
 import os
@@ -34,14 +34,14 @@ def long_run(simulation, outcome):
 
 
 def test_others_run_meanwhile_and_one_thread_has_a_simulation(pendulum):
-    """A run without an end in the main thread, which Ctrl-C ends; another thread looks on."""
+    """A run without an end in the main thread, which Ctrl-C ends. Another thread watches it."""
     refusals, steps = [], []
 
     def look_on():
         begin = time.monotonic()
         while not refusals and time.monotonic() - begin < 60:
             try:
-                pendulum.positions  # free until the run begins
+                pendulum.positions  # allowed until the run begins
             except RuntimeError as error:
                 refusals.append(str(error))
         for work in (pendulum.step, pendulum.snapshot, pendulum.reset, lambda: pendulum.row()):
@@ -58,7 +58,7 @@ def test_others_run_meanwhile_and_one_thread_has_a_simulation(pendulum):
     assert outcome == ["interrupted"]
     assert "another thread is working on this simulation" in refusals[0]
     assert len(steps) == 4
-    # It is as good as before.
+    # The simulation still works.
     before = pendulum.time
     assert before > 0
     pendulum.step()

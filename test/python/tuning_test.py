@@ -1,4 +1,4 @@
-"""Settings that are searched for."""
+"""Test the search for settings (tuning) in Python."""
 
 import math
 
@@ -12,7 +12,7 @@ INTERVALS = 50
 
 
 def tip(simulation, until):
-    """The tip's positions at the ends of intervals, shape (INTERVALS + 1, 3)."""
+    """Return the positions of the tip at the ends of intervals, shape (INTERVALS + 1, 3)."""
     record = ["probe/tip/[xyz]"]
     steps = round(until / simulation.step_size)
     assert steps % INTERVALS == 0
@@ -31,7 +31,7 @@ def test_the_tuned_scene_is_as_accurate_as_was_asked_for():
     simulation = flexarm.Simulation(tuning.scene)
     assert simulation.tolerance == tuning.tolerance
     positions = tip(simulation, until)
-    # The root mean square by the trapezoidal rule; at the start there is no error.
+    # The root mean square by the trapezoidal rule. At the start there is no error.
     squares = ((positions - reference[1:]) ** 2).sum(axis=1)
     squares[-1] /= 2
     way = numpy.linalg.norm(reference - reference[0], axis=1).max()

@@ -1,4 +1,4 @@
-"""What type checkers know of the package: the stubs, and what is annotated where it stands."""
+"""Test what type checkers know of the package: its stubs and its annotations."""
 
 import ast
 import os
@@ -17,10 +17,11 @@ pytestmark = pytest.mark.skipif(tuple(map(int, numpy.__version__.split(".")[:2])
                                 reason="numpy says nothing of its types before 1.20")
 
 PACKAGE = os.path.dirname(flexarm._flexarm.__file__)
-# Of classes that pybind11 makes: their metaclass, and that there is no way to make one. Of what stands in for
-# gymnasium: that it is defined twice. What types are named for alone is not there when programs run.
+# Differences that the checker shall ignore. Classes made by pybind11 have another metaclass and no constructor. The
+# stand-ins for gymnasium are defined twice. A name that is imported for types alone does not exist at run time.
 OVERLOOKED = r"""
 flexarm(\._flexarm|\.environment)?\.(LinearModel|RunEvent|Scene|Sensitivities|Simulation|State|StepResult)(\.__init__)?
+flexarm(\._flexarm)?\.Recording(\.__init__)?
 flexarm\.spaces\..*-redefinition
 flexarm\.values\.Scene
 """
@@ -39,6 +40,8 @@ simulation.apply_wrenches([flexarm.Wrench("hand", force=(0, 0, 1))])
 model, values = simulation.linearise(about="steady").reduced(4)
 names: typing.List[str] = model.states
 version: str = flexarm.__version__
+run = flexarm.Run(["time"], ["s"], rows)
+largest: float = run.minus(flexarm.read_run("arm.h5")).times.max() + run.spectrum("time").amplitudes[0]
 
 
 def reward(observation: numpy.ndarray, action: numpy.ndarray, simulation: flexarm.Simulation) -> float:
@@ -60,7 +63,8 @@ flexarm.read_scene("arm.urdf", {}, True)
 
 
 def run(tmp_path, *command):
-    """By Python, beside what of the package is its API: messages, and the rooms of programs, are not."""
+    """Run a Python module with only the package's API on the path, without messages and program folders. Return its
+    status and output."""
     own = tmp_path / "own" / "flexarm"
     own.mkdir(parents=True, exist_ok=True)
     for name in os.listdir(PACKAGE):
@@ -88,7 +92,8 @@ def test_programs_are_checked(tmp_path):
 
 
 def test_the_package_itself_is_checked(tmp_path):
-    modules = ("flexarm." + name for name in ("errors", "values", "spaces", "environment"))
+    modules = ("flexarm." + name for name in ("errors", "values", "spaces", "environment",
+                                           "cut_hdf5", "result_files", "results"))
     assert run(tmp_path, "mypy", *(word for module in modules for word in ("-m", module)))[0] == 0
 
 
@@ -99,7 +104,7 @@ def test_stubs_have_all_names_and_no_others(tmp_path):
 
 
 def functions():
-    """Of the extension module: (name, the object, its declarations in the stub)."""
+    """Return the functions of the extension module: (name, the object, its declarations in the stub)."""
     with open(os.path.join(PACKAGE, "_flexarm.pyi"), encoding="utf-8") as file:
         tree = ast.parse(file.read())
     found = {}
@@ -118,7 +123,7 @@ def is_overload(node):
 
 
 def test_arguments_have_the_names_of_the_module():
-    """What stubtest cannot see: the module says its arguments in its texts alone."""
+    """Check names of arguments, which stubtest cannot see: the module has them only in its docstrings."""
     seen = 0
     for (owner, name), (thing, declarations) in functions().items():
         if name.startswith("__") and name != "__init__":

@@ -1,4 +1,4 @@
-"""Several environments as one, and what of gymnasium both kinds have."""
+"""Test several environments as one, and the parts of gymnasium's interface that both kinds have."""
 
 import numpy
 import pytest
@@ -27,7 +27,7 @@ def vector(num_envs, threads):
 
 
 def history(environment, actions, seed):
-    """All that an environment gives, as numbers."""
+    """Return all outputs of an environment as numbers."""
     rows = [environment.reset(seed=seed)[0].tolist()]
     for action in actions:
         observation, *outcome, _ = environment.step(action)
@@ -88,7 +88,7 @@ def test_bad_arguments_are_refused_before_anything_moves():
     for name in ("num_envs", "threads"):
         with pytest.raises(ValueError, match=name + ": expected a number >= 1, got 0"):
             flexarm.VectorEnvironment(example("rigid_double_pendulum"), speed, **{"num_envs": 1, name: 0})
-    with pytest.raises(ValueError, match=r"joints: expected some that take efforts, of \[shoulder, elbow\], got 'hip'"):
+    with pytest.raises(ValueError, match=r"expected joints that take efforts, of \[shoulder, elbow\], got 'hip'"):
         flexarm.Environment(example("rigid_double_pendulum"), speed, joints=["hip"])
 
 
@@ -110,7 +110,7 @@ def test_spaces():
 
 
 def test_samples_keep_to_bounds():
-    """Of the space that is there without gymnasium, and of gymnasium's."""
+    """Check the space that exists without gymnasium, or gymnasium's own."""
     low, high = [-1, 0, -numpy.inf, -numpy.inf], [2, numpy.inf, 0, numpy.inf]
     space = spaces.Box(numpy.array(low, dtype=float), numpy.array(high, dtype=float), (4,), numpy.float64)
     space.seed(1)

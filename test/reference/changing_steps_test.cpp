@@ -1,4 +1,4 @@
-// What schemes conserve, they conserve whatever their steps.
+// Tests that a scheme conserves the same quantities in steps of changing length as in equal steps.
 #include "reference/dynamics_joint_chain.h"
 #include "schemes/scheme.h"
 
@@ -7,13 +7,13 @@ namespace {
 
 constexpr double kLargestStep = 0.02;
 
-/// Lengths without a pattern, from a tenth of the step to the whole one; each holds for a few steps.
+/// Irregular step lengths, from a tenth of the largest step to the whole one. Each length holds for a few steps.
 double step_at(int n) {
   const double wave = std::sin(1.7 * (n / 7)) + std::sin(0.61 * (n / 7));
   return kLargestStep * (0.55 + 0.225 * wave);
 }
 
-/// As in equal steps, see FreeFlight and FreeTree.
+/// Expects the conservation of equal steps; see FreeFlight and FreeTree.
 void expect_conserved(const SceneBuilder& builder, const Scheme& scheme, int steps, double momentum_tolerance) {
   Simulation simulation(builder.scene, options(std::string(scheme.name), kLargestStep, 1e-10));
   InvariantDrift drift(simulation);

@@ -1,4 +1,4 @@
-// total - work + dissipated stays constant under every kind of load, drive and dissipation.
+// Tests that total energy - work + dissipation stays constant under every kind of load, drive and dissipation.
 #include <functional>
 
 #include "reference/dynamics_joint_chain.h"
@@ -8,8 +8,8 @@ namespace {
 
 using scene::JointKind;
 
-/// An arm under gravity: revolute shoulder, flexible upper arm, revolute elbow, flexible forearm with a body at its
-/// tip.
+/// An arm under gravity: a revolute shoulder, a flexible upper arm, a revolute elbow, and a flexible forearm with a
+/// body at its tip.
 SceneBuilder arm() {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -90,7 +90,7 @@ SceneBuilder scene_with_everything() {
   SceneBuilder b = arm();
   for (const Influence& influence : influences())
     if (influence.name != "mimic" && influence.name != "prescribed_motion") influence.add(b);
-  // A second arm for what excludes the rest.
+  // A second arm gets the influences that exclude others.
   b.body("left", 1, {0.2, 0, 0}, body_inertia());
   b.body("right", 1, {0.2, 0.1, 0}, body_inertia());
   b.body("follower", 1, {0.2, 0.1, 0}, body_inertia());
@@ -102,8 +102,8 @@ SceneBuilder scene_with_everything() {
   return b;
 }
 
-/// Round-off of the balance: Newton's tolerance 1e-10 on updates leaves, after its last quadratic step, no more than
-/// round-off in each step; 1e-10 covers its sum over the run.
+/// Expects that the balance closes to round-off. With the tolerance 1e-10 on updates, the last quadratic iteration
+/// leaves only round-off in each step; 1e-10 covers the sum over the run.
 void expect_balance(const SceneBuilder& builder, double step) {
   Simulation simulation(builder.scene, options("em", step, 1e-10));
   InvariantDrift drift(simulation);
@@ -142,7 +142,7 @@ TEST(EnergyBudget, WorkOfAConstantForceIsForceTimesDisplacement) {
   EXPECT_NEAR(simulation.energies().work, expected, 1e-12 * (1 + std::abs(expected)) * 300);
 }
 
-// The dissipated energy never decreases, whatever dissipates.
+// The dissipated energy never decreases, for any source of dissipation.
 TEST(EnergyBudget, DissipationIsMonotone) {
   for (const std::string name : {"dampers", "friction", "limits", "material_damping"}) {
     SceneBuilder b = arm();

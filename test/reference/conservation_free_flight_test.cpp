@@ -1,4 +1,4 @@
-// Invariants of free flight (reference case D1) over ten thousand steps.
+// Tests the invariants of free flight (reference case D1) over ten thousand steps.
 #include <cstdio>
 
 #include "reference/dynamics_joint_chain.h"
@@ -60,7 +60,7 @@ TEST_P(FreeTree, ConservesWithEveryKindOfJoint) {
   InvariantDrift drift(simulation);
   run(simulation, 300, [&] { drift.observe(); });
   if (scheme.conserves_energy || scheme.dissipation.any()) {
-    EXPECT_LT(drift.energy(), 1e-10);  // of total + dissipated
+    EXPECT_LT(drift.energy(), 1e-10);  // of total energy + dissipation
   }
   EXPECT_LT(drift.momentum(), 1e-11);
   EXPECT_LT(drift.angular_momentum(), 1e-11);
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Joints, FreeTree,
                            return std::string();
                          });
 
-// The table says which schemes these are: one that loses its claim, or gains one, must show here.
+// The scheme table lists these claims. A scheme that loses or gains a claim fails here.
 TEST(FreeFlight, ClaimsOfTheTable) {
   std::string energy, momenta;
   for (const Scheme& scheme : schemes()) {
@@ -104,7 +104,7 @@ TEST(FreeFlight, ClaimsOfTheTable) {
   EXPECT_EQ(momenta, "em em0 em_symmetric em4 edmc1 edmc2 m1 m2 std beta1 beta2 beta1_repaired beta2_repaired ");
 }
 
-/// Steps of 20 ms that a tree with three times the spin takes, at most `most`.
+/// Number of steps of 20 ms, at most `most`, that a tree with three times the spin takes before it fails.
 int steps_of_fast_tree(const std::string& scheme, scene::JointKind kind, int most) {
   SceneBuilder b = free_tree(kind);
   b.scene.initial_links.front().angular *= 3;
@@ -113,7 +113,7 @@ int steps_of_fast_tree(const std::string& scheme, scene::JointKind kind, int mos
   InvariantDrift drift(simulation);
   int steps = 0;
   for (; steps < most && simulation.step().converged; ++steps) drift.observe();
-  // What it does before it fails is exact.
+  // Until it fails, the motion conserves exactly.
   EXPECT_LT(drift.energy(), 1e-10) << scheme;
   EXPECT_LT(drift.momentum(), 1e-11) << scheme;
   EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
@@ -121,9 +121,9 @@ int steps_of_fast_tree(const std::string& scheme, scene::JointKind kind, int mos
   return steps;
 }
 
-// What the thesis's correction by axial and shear forces alone (6.22, 6.26) costs: its denominator vanishes where the
-// axial and shear strains of an element pause, and Newton's method ends there even in steps of 0.6 ms. The repaired
-// correction, whose denominator holds the curvatures too, passes.
+// The thesis's correction by axial and shear forces alone (6.22, 6.26) has a denominator that vanishes when the axial
+// and shear strains of an element pause. Then Newton's method fails, even in steps of 0.6 ms. The denominator of the
+// repaired correction also contains the curvatures, so it does not fail.
 TEST(FreeFlight, ThesisCorrectionFailsWhereTheRepairedOneDoesNot) {
   using scene::JointKind;
   for (const JointKind kind : {JointKind::Fixed, JointKind::Revolute})
@@ -133,7 +133,7 @@ TEST(FreeFlight, ThesisCorrectionFailsWhereTheRepairedOneDoesNot) {
     }
 }
 
-// The control group: what the bounds above would catch.
+// Shows that the bounds above detect a scheme that does not conserve.
 TEST(FreeFlight, NewmarkDriftsVisibly) {
   Simulation simulation(tumbling_beam().scene, options("newmark", 0.05));
   InvariantDrift drift(simulation);

@@ -1,5 +1,4 @@
-// What dry friction takes is accounted for: the energy budget closes; inside a free system it changes no momentum.
-// momentum.
+// Tests the account of dry friction: the energy budget closes, and friction inside a free system changes no momentum.
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
 
@@ -9,7 +8,7 @@ namespace {
 using scene::JointKind;
 using Law = scene::FrictionDescription::Law;
 
-/// A flexible arm under gravity: joints of every kind with a normal force, a runner on the upper arm.
+/// A flexible arm under gravity, with joints of every kind that has a normal force, and a slider on the upper arm.
 SceneBuilder rubbing_arm(Law law, double effort, double coefficient) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -36,7 +35,7 @@ SceneBuilder rubbing_arm(Law law, double effort, double coefficient) {
   return b;
 }
 
-/// Newton's tolerance leaves round-off in each step; 1e-10 covers its sum over the run.
+/// Newton's method leaves only round-off in each step; 1e-10 covers the sum over the run.
 TEST(RubbingArm, BudgetClosesToRoundOff) {
   for (const double effort : {0.3, 3.0})
     for (const double coefficient : {0.0, 0.5})
@@ -61,7 +60,7 @@ TEST(RubbingArm, BudgetClosesToRoundOff) {
       }
 }
 
-// Friction between parts of a free system changes neither momentum.
+// Friction between parts of a free system changes neither its linear nor its angular momentum.
 TEST(FreeTree, InternalFrictionKeepsMomenta) {
   for (const JointKind kind : {JointKind::Revolute, JointKind::Prismatic, JointKind::Universal, JointKind::Cylindrical})
     for (const Law law : {Law::Coulomb, Law::Smooth}) {

@@ -1,4 +1,4 @@
-// Beams that touch, against closed forms and an elastica.
+// Tests beams in contact against closed forms and an elastica.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ std::string rod(const std::string& name, const std::string& line, const std::str
 
 // ---------------------------------------------------------------- a cable over a cylinder
 
-/// A cable that slides over half of a fixed cylinder: tension at the end that is pulled over that at the other one, on
-/// which 10 N hang, at `friction`. It is bent without load as it lies, and thin: no tension is left for its bending.
+/// A cable that slides over half of a fixed cylinder. ratio(): tension at the pulled end over that at the other end, on
+/// which 10 N hang. The cable's undeformed shape is the bent one, and it is thin, so that its bending needs no tension.
 struct Capstan {
   static constexpr double kRadius = 0.1, kCable = 2e-4, kEnds = 0.05, kLine = kRadius + kCable;
   static double ratio(int elements, double friction) {
@@ -62,16 +62,17 @@ struct Capstan {
     }
     return pulled / held;
   }
-  /// Per radian, of a cable of some thickness: friction acts on its surface, at the part e = (radius of the cable) /
-  /// (radius of its line) off the line. Along the line T' = f + Q, across it Q' + T = n, the moment is constant, so
-  /// that Q = -e f; f = mu n. With T ~ exp(a angle): n (1 + e mu a) = T and a = mu (1 - e) / (1 + e mu a).
+  /// Exponent of the tension per radian for a cable of finite thickness. Friction acts on the cable's surface, at the
+  /// distance e = (radius of the cable) / (radius of its line) from the line, relative to this radius. Equilibrium
+  /// along the line: T' = f + Q, across it: Q' + T = n. The moment is constant, so Q = -e f; f = mu n. With T ~ exp(a
+  /// angle): n (1 + e mu a) = T and a = mu (1 - e) / (1 + e mu a).
   static double exponent(double friction) {
     const double e = kCable / kLine;
     return (std::sqrt(1 + 4 * e * friction * friction * (1 - e)) - 1) / (2 * e * friction);
   }
 };
 
-// Vibrations that friction stirs up leave some 0.1 % in the mean of 0.1 s; 1 % is asked for.
+// Vibrations that friction excites leave some 0.1 % in the mean over 0.1 s; the tolerance is 1 %.
 TEST(ContactOfBeams, CableOverACylinderHoldsByEuler) {
   constexpr double kFriction = 0.3;
   const double expected = std::exp(kPi * Capstan::exponent(kFriction));
@@ -82,14 +83,14 @@ TEST(ContactOfBeams, CableOverACylinderHoldsByEuler) {
 
 // ---------------------------------------------------------------- a cantilever on a plane
 
-/// A cantilever of a round bar, radius 4 mm, E = 7e9, 2700 kg/m^3, clamped level at a height over a plane on which its
-/// weight lays its far part.
+/// A cantilever made of a round bar with radius 4 mm, E = 7e9, 2700 kg/m^3. It is clamped level at a height over a
+/// plane, and its outer part lies on the plane by its weight.
 struct Laid {
   double length, height, stiffness;
   static constexpr double kRadius = 0.004, kBending = 7e9 * kPi / 4 * kRadius * kRadius * kRadius * kRadius;
   static constexpr double kWeight = 2700 * kPi * kRadius * kRadius * kG;  // per length [N/m]
   struct Result {
-    double shear, moment, touch;  // at the clamp; arc length where it first touches
+    double shear, moment, touch;  // shear and moment at the clamp; arc length at which it first touches
   };
   Result solve(int elements) const {
     const std::string line = fmt::format("<line to=\"{} 0 0\"/>", length);
@@ -102,7 +103,7 @@ struct Laid {
         "", 1e-3);
     EXPECT_TRUE(simulation.solve_static(4).converged);
     std::vector<BeamPoint> points;
-    simulation.beam_points(1, 3, points);  // at the stations
+    simulation.beam_points(1, 3, points);  // the stations
     const auto touch = std::find_if(points.begin(), points.end(),
                                     [&](const BeamPoint& point) { return point.pose.position.z() < -height; });
     EXPECT_NE(touch, points.end());
@@ -110,8 +111,8 @@ struct Laid {
   }
 };
 
-// Small deflections: w = q/(24 EI) (x^4 - 8/3 a x^3 + 2 a^2 x^2), w(a) = height, without moment at the lift-off a:
-// there the plane presses with the force q a/3; at the clamp 2/3 q a and q a^2/6 are left.
+// Small deflections: w = q/(24 EI) (x^4 - 8/3 a x^3 + 2 a^2 x^2), w(a) = height, without moment at the lift-off a.
+// There the plane presses with the force q a/3. The clamp carries 2/3 q a and q a^2/6.
 TEST(ContactOfBeams, CantileverIsLaidOnAPlane) {
   const Laid laid{1, 1e-3, 1e8};
   const double a = std::pow(72 * Laid::kBending * laid.height / Laid::kWeight, 0.25);
@@ -120,13 +121,14 @@ TEST(ContactOfBeams, CantileverIsLaidOnAPlane) {
     EXPECT_NEAR(seen.shear, 2 * Laid::kWeight * a / 3, 1e-3 * seen.shear);
     EXPECT_NEAR(seen.moment, Laid::kWeight * a * a / 6, 2e-3 * seen.moment);
   }
-  // The reaction of the plane at the lift-off, by the balance of what hangs.
+  // The reaction of the plane at the lift-off, from the equilibrium of the free part.
   EXPECT_NEAR(Laid::kWeight * a - fine.shear, Laid::kWeight * a / 3, 1e-3 * Laid::kWeight * a);
 }
 
-// Large ones: EI theta'' = -(V - q s) cos theta, z' = sin theta between the clamp, theta = z = 0, and the lift-off,
-// theta = theta' = 0, z = height, with the length a and the shear V at the clamp as unknowns; no force along the plane.
-// scipy.integrate.solve_bvp, tolerance 1e-10: a = 2.19665864 m, V = 1.95606164 N, EI theta'(0) = 1.06032959 N m.
+// Large deflections: EI theta'' = -(V - q s) cos theta, z' = sin theta. Conditions at the clamp: theta = z = 0; at the
+// lift-off: theta = theta' = 0, z = height. Unknowns are the length a and the shear V at the clamp; there is no force
+// along the plane. scipy.integrate.solve_bvp with the tolerance 1e-10 gives a = 2.19665864 m, V = 1.95606164 N, EI
+// theta'(0) = 1.06032959 N m.
 TEST(ContactOfBeams, ElasticaIsLaidOnAPlane) {
   constexpr double kLiftOff = 2.19665864, kShear = 1.95606164, kMoment = 1.06032959;
   for (const double stiffness : {1e6, 1e8}) {
@@ -135,9 +137,9 @@ TEST(ContactOfBeams, ElasticaIsLaidOnAPlane) {
     EXPECT_NEAR(fine.shear, kShear, 1e-4 * kShear) << stiffness;
     EXPECT_NEAR(fine.moment, kMoment, 2e-4 * kMoment) << stiffness;
     EXPECT_GT(observed_order(coarse.moment - kMoment, fine.moment - kMoment), 1.8) << "of elements of order 2";
-    // A plane that gives way is a foundation, on which w = B exp(-b x) sin(b x), b^4 = k'/(4 EI): it takes the shear Q
-    // and the moment Q/b together, and the bar, whose moment falls to nothing at the lift-off, has that 1/b before it.
-    // Beside that, 1/b once more over the length, and the distance of two stations.
+    // An elastic plane is a foundation, on which w = B exp(-b x) sin(b x) with b^4 = k'/(4 EI). It carries the shear Q
+    // together with the moment Q/b. So the bar, whose moment vanishes at the lift-off, has this moment at the distance
+    // 1/b before it. The tolerance is (1/b)^2 over the length, and the distance of two stations.
     const double before = std::pow(4 * Laid::kBending / (stiffness / laid.length), 0.25);
     EXPECT_NEAR(fine.touch, kLiftOff - before, 3.0 / 80 / 8 + before * before / kLiftOff) << stiffness;
   }
@@ -145,11 +147,11 @@ TEST(ContactOfBeams, ElasticaIsLaidOnAPlane) {
 
 // ---------------------------------------------------------------- an elastic rod hits a wall
 
-// A rod, E = 1e9, 1000 kg/m^3, radius 20 mm, that comes end-on with v: the wall feels Z v, Z = c A rho, until the wave
-// comes back from the far end, at 2 L/c; then the rod leaves with v, and is at rest within. Through the stiffness k of
-// its end (time r = Z/k): Z v (1 - exp(-t/r)) before that, from s = t - 2 L/c = 0 on Z v (-1 + 2 (1 + s/r) exp(-s/r)),
-// which ends at s = 1.678 r. The middle of that impulse comes r later than L/c, its size is 2 m v (1 - 0.052 r c/(2
-// L)).
+// A rod with E = 1e9, 1000 kg/m^3 and radius 20 mm hits a wall end-on with v. The wall feels the force Z v, Z = c A
+// rho, until the wave returns from the far end, at 2 L/c. Then the rod leaves with v, and without internal motion. With
+// the stiffness k of its end (time r = Z/k), the force is Z v (1 - exp(-t/r)) before the return. After it, with s = t -
+// 2 L/c, it is Z v (-1 + 2 (1 + s/r) exp(-s/r)), which ends at s = 1.678 r. The middle of this impulse is r later than
+// L/c, and its size is 2 m v (1 - 0.052 r c/(2 L)).
 TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
   constexpr double kSpeed = 0.1, kRadius = 0.02, kVelocity = 1e3, kWave = 2 / kVelocity;
   const double impedance = kVelocity * 1000 * kPi * kRadius * kRadius, force = impedance * kSpeed;
@@ -157,7 +159,7 @@ TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
     int elements;
     double stiffness;  // of the whole tube
     double end_share;  // half of the distance of two stations, over the length
-    double ripple;     // of the front, which the mesh disperses
+    double ripple;     // relative ripple behind the front, because the mesh disperses it
   };
   for (const Hit& hit : {Hit{20, 5e9, 0.5 / 60, 0.02}, Hit{40, 1e10, 0.5 / 80, 0.01}}) {
     Simulation simulation = simulation_of(
@@ -194,7 +196,7 @@ TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
 
 // ---------------------------------------------------------------- bounces
 
-// Factors are made anew in each iteration, so that nothing is left of the residual.
+// Every iteration has new factors, so that the residual is solved to round-off.
 TEST(ContactOfBeams, AHundredHitsOfABeamKeepItsEnergy) {
   SimulationOptions options;
   options.reuse_factorisation = false;

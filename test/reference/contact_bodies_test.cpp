@@ -1,4 +1,4 @@
-// Rigid bodies that touch, against closed forms and solvers of ordinary differential equations.
+// Tests rigid bodies in contact against closed forms and solvers of ordinary differential equations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,18 +15,18 @@
 namespace flexarm::test::touching {
 namespace {
 
-/// Of an elastic contact at a penetration: k x dx/dp with x = p / (1 - (p/d)^2)^2, nothing outside (docs/notes/stops.md
-/// 2). [N]
+/// Force of an elastic contact at a penetration p: k x dx/dp with x = p / (1 - (p/d)^2)^2, zero outside
+/// (docs/notes/stops.md 2). [N]
 double push(double stiffness, double depth, double penetration) {
   if (penetration <= 0) return 0;
   const double s = penetration / depth, room = 1 - s * s;
   return stiffness * penetration * (1 + 3 * s * s) / std::pow(room, 5);
 }
 
-// ---------------------------------------------------------------- what stays in contact
+// ---------------------------------------------------------------- bodies that stay in contact
 
-/// Largest error of the angle of an arm whose ball swings on the floor that carries it, without leaving it: a hinge at
-/// a height, a ball at the end of a weightless rod, pressed by its weight.
+/// Largest error of the angle of an arm on a hinge at some height, with a ball at the end of a weightless rod. The ball
+/// lies on the floor, pressed by its weight, and swings without leaving the floor.
 double error_of_pressed_arm(double step) {
   constexpr double kMass = 1, kBall = 0.05, kArm = 0.5, kHeight = 0.06, kStiffness = 6e3, kInside = 1e-3, kUntil = 1;
   const double start = std::asin((kHeight - kBall + kInside) / kArm), inertia = 0.4 * kMass * kBall * kBall;
@@ -40,7 +40,7 @@ double error_of_pressed_arm(double step) {
           kFloor +
           fmt::format("<contact first=\"arm\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness),
       fmt::format("<initial joint=\"hinge\" position=\"{:.17g}\"/>", start), step);
-  const double depth = 0.1 * kBall;  // it starts less than a quarter of that inside
+  const double depth = 0.1 * kBall;  // the initial penetration is less than a quarter of this
   const OdeFunction swing = [&](double, const Eigen::VectorXd& y) {
     const double lever = kArm * std::cos(y[0]), inside = kBall - kHeight + kArm * std::sin(y[0]);
     return Eigen::Vector2d(y[1],
@@ -63,7 +63,7 @@ TEST(ContactOfBodies, WhatStaysInContactHasOrderTwo) {
   EXPECT_NEAR(observed_order(coarse, fine), 2, 0.05);
 }
 
-// A ball lies where both walls of a wedge push with m g / (2 cos a).
+// A ball lies in a wedge, whose walls push with m g / (2 cos a) each.
 TEST(ContactOfBodies, BallComesToRestInAWedge) {
   constexpr double kMass = 1, kRadius = 0.05, kStiffness = 1e5, kSlope = 0.6;
   const double sine = std::sin(kSlope), cosine = std::cos(kSlope), each = kMass * kG / (2 * cosine);
@@ -83,7 +83,7 @@ TEST(ContactOfBodies, BallComesToRestInAWedge) {
   EXPECT_NEAR(place.y(), 0.01, 1e-12);
 }
 
-// No force is enough for a motion that leaves no room: the step fails.
+// No contact force can prevent a prescribed motion that leaves no room, so the step fails.
 TEST(ContactOfBodies, WhatIsDrivenThroughAnotherIsTold) {
   Simulation simulation = simulation_of(
       "<joint name=\"lower\" type=\"prismatic\"><parent link=\"world\"/><child link=\"block\"/><origin xyz=\"0 0 "
@@ -100,13 +100,13 @@ TEST(ContactOfBodies, WhatIsDrivenThroughAnotherIsTold) {
 
 // ---------------------------------------------------------------- hits
 
-/// Newton's cradle of five balls of 0.2 kg and radius 20 mm on rods of 0.3 m, 10 um apart; the first comes in with 1
-/// m/s. What each of them does with contacts of a finite stiffness follows from their equations alone.
+/// Newton's cradle of five balls of 0.2 kg and radius 20 mm on rods of 0.3 m, 10 um apart. The first ball arrives with
+/// 1 m/s. expected() solves the equations of the balls with contacts of finite stiffness.
 struct Cradle {
   static constexpr int kBalls = 5;
   static constexpr double kMass = 0.2, kRadius = 0.02, kRod = 0.3, kGap = 1e-5, kStiffness = 1e6, kUntil = 0.02;
   static constexpr double kStart = 0.01, kRate = -1 / kRod, kApart = 2 * kRadius + kGap;
-  static constexpr double kInertia = 0.4 * kMass * kRadius * kRadius;  // of a ball
+  static constexpr double kInertia = 0.4 * kMass * kRadius * kRadius;  // inertia of a ball
 
   static Eigen::VectorXd expected() {
     const OdeFunction swing = [](double, const Eigen::VectorXd& y) {
@@ -116,7 +116,7 @@ struct Cradle {
       for (int i = 0; i + 1 < kBalls; ++i) {
         const Eigen::Vector2d way = arm(i + 1) + Eigen::Vector2d(kApart, 0) - arm(i), along = way.normalized();
         const double force = push(kStiffness, 0.1 * kRadius, 2 * kRadius - way.norm());
-        // Moment about y of a force: z Fx - x Fz.
+        // Moment of a force about y: z Fx - x Fz.
         const auto lever = [&](int j) { return arm(j).y() * along.x() - arm(j).x() * along.y(); };
         rates[kBalls + i] -= force * lever(i);
         rates[kBalls + i + 1] += force * lever(i + 1);
@@ -128,7 +128,7 @@ struct Cradle {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * kBalls);
     y[0] = kStart;
     y[kBalls] = kRate;
-    constexpr int kPieces = 400;  // so that no hit lies within one
+    constexpr int kPieces = 400;  // so short that no hit lies within one
     for (int i = 0; i < kPieces; ++i) y = solve_ode(swing, kUntil * i / kPieces, kUntil * (i + 1) / kPieces, y, 1e-10);
     return y;
   }
@@ -148,7 +148,7 @@ struct Cradle {
         parts, fmt::format("<initial joint=\"hinge0\" position=\"{}\" velocity=\"{:.17g}\"/>", kStart, kRate), step);
     const double begin = simulation.energies().total();
     run(simulation, kUntil);
-    // Of the kinetic energy, 0.1 J: round-off over sub-steps of 1e-5 s.
+    // Tolerance: round-off over sub-steps of 1e-5 s; the kinetic energy is 0.1 J.
     EXPECT_NEAR(simulation.energies().total(), begin, 1e-10);
     Eigen::VectorXd out(kBalls);
     for (int i = 0; i < kBalls; ++i) out[i] = simulation.velocity(i);
@@ -156,7 +156,7 @@ struct Cradle {
   }
 };
 
-// The order at impacts where a step resolves them: a hit lasts 1 ms.
+// A step resolves the hits, which last 1 ms. So results after hits have the scheme's order.
 TEST(ContactOfBodies, NewtonsCradleDoesWhatItsEquationsSay) {
   const Eigen::VectorXd expected = Cradle::expected().tail(Cradle::kBalls);
   EXPECT_GT(expected[0], 0) << "the first ball comes back";
@@ -169,13 +169,13 @@ TEST(ContactOfBodies, NewtonsCradleDoesWhatItsEquationsSay) {
 
 // ---------------------------------------------------------------- friction
 
-// A disc that lies on its rim spins down by mu m g R in all, at whatever of its points: 2 mu g/R. Forces act at the
-// mean of both ends of a step, whose arm is short by (rate h)^2/8.
+// A disc that lies flat on its rim points is braked by the moment mu m g R in all, however its points share the load: 2
+// mu g/R. Forces act at the mean of both ends of a step, whose arm is shorter by (rate h)^2/8.
 TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
   constexpr double kMass = 2, kRadius = 0.1, kHigh = 0.02, kFriction = 0.3, kStiffness = 1e5, kRate = 10, kStep = 1e-3;
   constexpr int kPoints = 24;
   const double polar = kMass * kRadius * kRadius / 2, across = polar / 2 + kMass * kHigh * kHigh / 12;
-  // It starts where its rim carries it.
+  // It starts at the penetration at which its rim carries it.
   double inside = kMass * kG / kPoints / kStiffness;
   for (int i = 0; i < 20; ++i) inside *= kMass * kG / kPoints / push(kStiffness, 0.05 * kHigh, inside);
   Simulation simulation = simulation_of(
@@ -188,7 +188,7 @@ TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
       start("disc", {0, 0, kHigh / 2 - inside}, {0, 0, 0}, {0, 0, kRate}), kStep);
   const double braking = 2 * kFriction * kG / kRadius, stop = kRate / braking;
   const auto rate = [&] { return simulation.angular_momentum().z() / polar; };
-  run(simulation, 0.02);  // until all of the rim slips
+  run(simulation, 0.02);  // until all points of the rim slip
   const double first = rate(), begin = simulation.time();
   run(simulation, 0.9 * stop);
   const double seen = (first - rate()) / (simulation.time() - begin);
@@ -198,8 +198,8 @@ TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
   EXPECT_LE(simulation.link_pose(1).position.head<2>().norm(), 1e-12) << "it has spun on the spot";
 }
 
-/// A block of 0.5 kg between two pads that press with 20 N each, drawn along them: how far it has come and its
-/// acceleration at the end.
+/// A block of 0.5 kg between two pads with a clamping force, pulled along them: its displacement, and its acceleration
+/// at the end.
 struct Drawn {
   double way, acceleration;
 };
@@ -228,14 +228,14 @@ Drawn draw_block(double force, double friction, double pressed) {
 TEST(ContactOfBodies, WhatIsGraspedSlipsAtTwiceTheFrictionOfAFinger) {
   constexpr double kFriction = 0.5, kPressed = 20, kMost = 2 * kFriction * kPressed;
   const Drawn held = draw_block(0.999 * kMost, kFriction, kPressed);
-  // Four corners of each pad stick with 1e6 N/m, or as stiffly as the step allows.
+  // Four corners of each pad stick with a stiffness of 1e6 N/m, or with the largest stiffness that the step allows.
   EXPECT_LT(held.way, 2e-5);
   EXPECT_NEAR(held.acceleration, 0, 1e-9);
   for (const double more : {1.001, 1.01, 1.05})
     EXPECT_NEAR(draw_block(more * kMost, kFriction, kPressed).acceleration, (more - 1) * kMost / 0.5, 1e-9) << more;
 }
 
-// A cube that slides over the edge of a table: the edge comes into it by its front, and lies on its bottom. It goes on
+// A cube slides over the edge of a table. The edge enters the cube by its front, but carries its bottom. The cube moves
 // as on a plane, x = v t - mu g t^2/2, until its middle has left the table.
 TEST(ContactOfBodies, CubeSlidesOffATable) {
   constexpr double kFriction = 0.2, kSpeed = 2, kStiffness = 1e6;
@@ -252,7 +252,8 @@ TEST(ContactOfBodies, CubeSlidesOffATable) {
     ASSERT_TRUE(simulation.step().converged);
     const double t = simulation.time();
     EXPECT_NEAR(simulation.link_pose(1).position.x(), kSpeed * t - 0.5 * kFriction * kG * t * t, 1e-4) << t;
-    // Two corners carry it at the end, 10 mm behind the middle's way: the edge carries nearly all.
+    // At the end two corners, 10 mm behind the middle, and the edge carry it; the edge carries nearly all of the
+    // weight.
     EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.05, 2e-4) << t;
   }
   while (simulation.link_pose(1).position.z() > -0.1) ASSERT_TRUE(simulation.step().converged);
@@ -260,7 +261,8 @@ TEST(ContactOfBodies, CubeSlidesOffATable) {
   EXPECT_NEAR(account(simulation), begin, 1e-9);
 }
 
-// The same over the joint of two tables: both are as high, and the cube is as deep in one as it would be in the other.
+// The same over the gap between two tables of equal height. The penetration on the second table continues that on the
+// first one.
 TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
   constexpr double kFriction = 0.1, kSpeed = 2;
   std::string parts = box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
@@ -276,15 +278,15 @@ TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
   while (simulation.link_pose(1).position.x() < 0.6) {
     ASSERT_TRUE(simulation.step().converged);
     const double t = simulation.time(), middle = kSpeed * t - 0.5 * kFriction * kG * t * t;
-    // It sinks by 0.12 mm, twice as much on half of its points, and the slip before it slides is as large.
+    // The cube sinks by 0.12 mm, and by twice as much on half of its points. The slip before it slides is as large.
     ASSERT_NEAR(simulation.link_pose(1).position.x(), middle, 1e-3) << t;
     ASSERT_NEAR(simulation.link_pose(1).position.z(), 0.05, 1e-3) << t;
   }
   EXPECT_NEAR(account(simulation), begin, 1e-9);
 }
 
-// Equal cubes on a floor: bottoms and sides of both are flush, and they must not pass through each other. Momentum is
-// kept but for friction, of which there is none.
+// Two equal cubes on a frictionless floor hit each other. Their bottoms and sides are flush, and they must not pass
+// through each other. Momentum is conserved.
 TEST(ContactOfBodies, CubesOnAFloorKnockAgainstEachOther) {
   Simulation simulation =
       simulation_of(box("one", 1, Vector3::Constant(0.1)) + floating("one") + box("other", 1, Vector3::Constant(0.1)) +
@@ -297,19 +299,20 @@ TEST(ContactOfBodies, CubesOnAFloorKnockAgainstEachOther) {
   EXPECT_LT(simulation.link_pose(1).position.x(), 0.02 + 0.18 * 0.5) << "it has given its speed away";
 }
 
-/// Painleve's rod: its lower end comes to the floor with 1 um to go and nothing but speed along it. Two balls of 1 mm
-/// at the ends of 1 m, 1 kg.
+/// Painleve's rod: its lower end approaches the floor at a distance of 1 um, with a velocity only along the floor. The
+/// rod has 1 kg and two balls of 1 mm at its ends, 1 m apart.
 struct Painleve {
   static constexpr double kHalf = 0.5, kMass = 1, kRadius = 1e-3, kStiffness = 1e6, kGap = 1e-6, kUntil = 0.03;
   static constexpr double kInertia = kMass * 4 * kHalf * kHalf / 12;
-  double friction, angle, speed;  ///< angle: of the rod over the floor
+  double friction, angle, speed;  ///< angle of the rod over the floor
 
-  bool is_paradox() const {  // friction of what slides presses more than it is pressed
+  bool is_paradox() const {  // sliding friction increases the normal force by more than this force
     const double along = speed < 0 ? -1 : 1;
     return 1 + 3 * std::cos(angle) * (std::cos(angle) + along * friction * std::sin(angle)) < 0;
   }
 
-  /// Velocity of the middle, and rate, by steps of the contact law's own equations: semi-implicit Euler's, of order 1.
+  /// Velocity of the middle and rate of rotation, from the contact law's own equations by the semi-implicit Euler
+  /// method of order 1.
   Vector3 expected() const {
     constexpr int kSteps = 300000;
     constexpr double kStep = kUntil / kSteps;
@@ -352,8 +355,8 @@ struct Painleve {
   }
 };
 
-// Where friction presses, it comes to a stand and is thrown off, though it had no speed towards the floor. Sticking has
-// order 1, sliding 2.
+// Where friction increases the normal force without bound, the rod jams and is thrown off, although it has no speed
+// towards the floor. Sticking has order 1, sliding order 2.
 TEST(ContactOfBodies, PainlevesRodJamsAndIsThrownOff) {
   for (const Painleve& rod : {Painleve{2, 1, -3}, Painleve{5, 0.6, -3}}) {
     EXPECT_TRUE(rod.is_paradox());

@@ -1,4 +1,4 @@
-// What contacts put out, against statics and closed forms: columns, sensors, points.
+// Tests the outputs of contacts against statics and closed forms: columns, sensors, contact points.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@ namespace flexarm::test::contact_outputs {
 namespace {
 
 constexpr double kG = 9.81, kMass = 3;
-/// What rests has the forces of statics: the contact's overdamped mode decays by exp(-50 t/s) in steps of 1 ms
-/// (docs/notes/contact.md 2), so that after 1 s nothing is left but Newton's tolerance: 1e-12 of the scene's length,
-/// about 1 m, times 10^6 N/m or less.
+/// At rest, forces are those of statics. The contact's overdamped mode decays by exp(-50 t/s) in steps of 1 ms
+/// (docs/notes/contact.md 2). So after 1 s only Newton's tolerance is left: 1e-12 of the scene's length, about 1 m,
+/// times at most 10^6 N/m.
 constexpr double kForceError = 1e-6;
 
 std::string box(const std::string& name, double mass, const Vector3& size) {
@@ -64,7 +64,7 @@ Simulation block(const std::string& more, const std::string& floor = "<ground na
                        "<initial joint=\"of_block/z\" position=\"0.05\"/>");
 }
 
-/// Force, number of points and gap of the only pair that has columns.
+/// Force, number of points and gap of the only pair with columns.
 std::vector<double> columns_of(const Simulation& simulation, const std::string& pair) {
   ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*"});
   const char* names[] = {"fx", "fy", "fz", "points", "gap"};
@@ -106,7 +106,7 @@ TEST(ContactOutputs, FloorCarriesTheWeightOfABlock) {
   EXPECT_LE(moment.norm(), kForceError) << "the block does not tilt";
 }
 
-// The names' order in the file is that of the columns, whichever of both has the points.
+// The columns have the names in the order of the file, whichever link has the contact points.
 TEST(ContactOutputs, AreOfTheFirstThatAContactNames) {
   Simulation simulation = block("<contact first=\"floor\" second=\"block\"/>");
   run(simulation, 1.5);
@@ -124,8 +124,8 @@ TEST(ContactOutputs, OfAllOthersHaveNoColumns) {
   EXPECT_NEAR(force, kMass * kG, kForceError) << "but they are told";
 }
 
-// A block that sticks on an incline is carried by m g, of which the floor's friction has the sine of its slope. What
-// sticks is damped to a factor of 0.98 each step (docs/notes/contact.md 3): to 1e-26 in 3000.
+// A block sticks on an incline. The floor's normal force and friction balance m g. The sticking contact's vibration
+// decays by 0.98 in each step (docs/notes/contact.md 3): to 1e-26 in 3000 steps.
 TEST(ContactOutputs, FrictionHoldsABlockOnAnIncline) {
   const double slope = 0.4;
   const Vector3 normal(-std::sin(slope), 0, std::cos(slope));
@@ -147,7 +147,7 @@ TEST(ContactOutputs, FrictionHoldsABlockOnAnIncline) {
 constexpr double kBallMass = 2, kStiffness = 2e4, kSpeed = 0.5;
 const double kOmega = std::sqrt(kStiffness / kBallMass);
 
-/// A ball without weight that begins to touch the floor, in steps of 1/500 of a radian of its contact.
+/// A weightless ball that just touches the floor, in steps of 1/500 of a radian of its contact's oscillation.
 Simulation hit(double restitution) {
   return simulation_of(
       fmt::format("<link name=\"ball\"><inertial><mass value=\"{}\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" "
@@ -161,9 +161,9 @@ Simulation hit(double restitution) {
       1 / kOmega / 500, 0);
 }
 
-// An undamped contact that stops a mass m of speed v has all of its energy: k x^2 = m v^2 where it is deepest, with the
-// hardened x = p / (1 - (p/d)^2)^2 of the penetration p, d = 0.01 m a tenth of the ball's radius; and the force is
-// k x dx/dp = v sqrt(k m) dx/dp. The largest of samples 1/500 of a radian apart lacks a few 1e-6 of it.
+// An undamped contact stops a mass m of speed v and stores all of its energy: k x^2 = m v^2 at the deepest point, with
+// the hardened x = p / (1 - (p/d)^2)^2 of the penetration p. d = 0.01 m is a tenth of the ball's radius. The force is k
+// x dx/dp = v sqrt(k m) dx/dp. The largest sample misses a few 1e-6 of it, since samples are 1/500 of a radian apart.
 TEST(ContactOutputs, AnElasticHitHasTheForceOfItsClosedForm) {
   Simulation simulation = hit(1);
   double largest = 0, penetration = 0;
@@ -182,7 +182,8 @@ TEST(ContactOutputs, AnElasticHitHasTheForceOfItsClosedForm) {
   EXPECT_GT(columns.row(simulation, {})[5], 0);
 }
 
-// What is put out changes the momentum, damped as it is: the trapezoidal rule over 500 steps for a radian, of order 2.
+// The reported forces, including damping, integrate to the change of momentum. The integral is by the trapezoidal rule
+// with 500 steps per radian, of order 2.
 TEST(ContactOutputs, ForcesOfAHitAreItsChangeOfMomentum) {
   Simulation simulation = hit(0.5);
   ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*/fz"});
@@ -200,7 +201,7 @@ TEST(ContactOutputs, ForcesOfAHitAreItsChangeOfMomentum) {
   EXPECT_NEAR(sum, change, 1e-4 * change);
 }
 
-// A pad that is built in, turned by a quarter about y so that its x axis points down, carries a block beside its
+// A fixed pad is rotated by a quarter turn about y, so that its x axis points down. It carries a block beside its
 // middle.
 TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
   Simulation simulation = simulation_of(
@@ -219,7 +220,8 @@ TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
     return out;
   };
   const Vector3 place = simulation.link_pose(1).position;
-  // The pad's axes: x is the world's -z, y its y, z its x. The block's middle is at x = 0.05 and, from `at`, y = -0.02.
+  // The pad's x axis is the world's -z, its y the world's y, its z the world's x. The block's middle is at x = 0.05
+  // and, from `at`, y = -0.02.
   const Vector3 arm(0.0, place.y() - 0.02, place.x());
   Vector6 expected;
   expected << weight, 0, 0, Vector3(arm.cross(Vector3(weight, 0, 0)));
@@ -229,7 +231,8 @@ TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
   EXPECT_EQ(values(2), Vector6(Vector6::Zero())) << "within a group forces cancel";
 }
 
-// A flexible blade lies on the floor: points are told along it, and the clamp carries what the floor does not.
+// A flexible blade lies on the floor. Contact points are reported along it, and the clamp carries what the floor does
+// not.
 TEST(ContactOutputs, FloorAndClampCarryABeam) {
   Simulation simulation = simulation_of(
       "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
@@ -245,8 +248,8 @@ TEST(ContactOutputs, FloorAndClampCarryABeam) {
   EXPECT_NEAR(floor + clamp, weight, 1e-4 * weight) << "it starts in equilibrium, to what statics leave";
 }
 
-// The motor's 40 N move two fingers, the second of which follows the first: by virtual work each presses with half of
-// it, and friction carries half of the block's weight. Its last swing has ended 2 s before.
+// The motor's 40 N move two fingers, the second of which mimics the first. By virtual work each finger presses with 20
+// N. Friction at each carries half of the block's weight. The last motion has ended 2 s before.
 TEST(ContactOutputs, FingersOfAGripperShareEffortAndWeight) {
   scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
   Simulation simulation(result.scene.value());

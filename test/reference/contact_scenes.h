@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes of bodies that touch: what its tests write them with.
+/// Functions that write the scenes of contact tests.
 
 #include <string>
 
@@ -48,7 +48,8 @@ inline std::string start(const std::string& link, const Vector3& place, const Ve
                      link, velocity.x(), velocity.y(), velocity.z(), rate.x(), rate.y(), rate.z());
 }
 
-/// `parts`: links, joints and contacts; `starts`: entries of <simulation>. Step in s, gravity in m/s^2.
+/// Reads a scene and starts it. `parts`: links, joints and contacts; `starts`: entries of <simulation>. Step in s,
+/// gravity in m/s^2.
 inline Simulation simulation_of(const std::string& parts, const std::string& starts, double step,
                                 const Vector3& gravity = {0, 0, -kG}, const SimulationOptions& options = {}) {
   scene::ReadResult result = scene::read_scene_text(

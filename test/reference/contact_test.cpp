@@ -1,4 +1,4 @@
-// Bodies and beams that touch, against closed forms.
+// Tests bodies and beams in contact against closed forms.
 #include <array>
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(Contact, ElasticBallKeepsItsEnergyOverAHundredBounces) {
   EXPECT_NEAR(simulation.momentum().x(), 0.2, 1e-10);
 }
 
-/// Of speeds before and behind the first hit of a ball that falls without weight.
+/// Ratio of the speeds after and before the first hit of a weightless ball.
 double restitution_seen(double asked, double step, double speed) {
   Simulation simulation =
       simulation_of(ball("ball", 2, 0.1) + floating("ball") + kFloor +
@@ -45,7 +45,8 @@ double restitution_seen(double asked, double step, double speed) {
   return simulation.momentum().z() / 2 / speed;
 }
 
-// What a step of a ninth of half a turn, and halves of longer ones, leave of it (docs/notes/contact.md 2): 1 %.
+// The error is 1 %, of steps of a ninth of half a turn of the oscillation, and of halved longer steps
+// (docs/notes/contact.md 2).
 TEST(Contact, HitsGiveBackWhatTheyAreAskedFor) {
   for (const double e : {0.3, 0.5, 0.8, 1.0})
     for (const double step : {1e-3, 1e-2})
@@ -64,12 +65,12 @@ TEST(Contact, NothingGoesThroughAThinWall) {
     run(simulation, 0.1 + 0.2 / speed);
     EXPECT_LT(simulation.link_pose(1).position.x(), -0.02) << speed;
     EXPECT_NEAR(simulation.momentum().x(), -0.5 * speed, 0.01 * speed);
-    // Places have the round-off of 0.1 m; over the shortest steps, of 1e-3 / 2^22 s, that is one of 6e-8 m/s.
+    // Positions of 0.1 m have round-off. Over the shortest steps of 1e-3 / 2^22 s this is a velocity error of 6e-8 m/s.
     EXPECT_NEAR(account(simulation), 0.5 * speed * speed, 1e-7 * speed * speed);
   }
 }
 
-// Two balls and a box without weight, in a cloud of hits: both momenta and the energy are those of the start.
+// Two balls and a weightless box hit each other many times. Energy and momenta are conserved.
 TEST(Contact, HitsOfFreeBodiesKeepEnergyAndMomenta) {
   Simulation simulation = simulation_of(
       ball("one", 1, 0.1) + ball("two", 2, 0.15) + box("box", 1.5, {0.3, 0.2, 0.25}) + floating("one") +
@@ -87,7 +88,7 @@ TEST(Contact, HitsOfFreeBodiesKeepEnergyAndMomenta) {
   EXPECT_LE((simulation.angular_momentum() - angular).norm(), 1e-11);
 }
 
-// Hits follow each other faster and faster; what is left at their end 2 v e / (g (1 - e)) is rest.
+// The hits follow each other ever faster and end at the time 2 v e / (g (1 - e)). After this the ball is at rest.
 TEST(Contact, BouncesComeToAnEnd) {
   Simulation simulation = simulation_of(ball("ball", 2, 0.1) + floating("ball") + kFloor +
                                             "<contact first=\"ball\" second=\"floor\" restitution=\"0.5\"/>",
@@ -95,7 +96,7 @@ TEST(Contact, BouncesComeToAnEnd) {
   const double fall = 2 * 2 / kG, end = fall + fall * 0.5 / (1 - 0.5);
   run(simulation, end + 0.1);
   EXPECT_NEAR(simulation.momentum().z(), 0, 1e-6);
-  EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.1, 2e-4);  // it has sunk by its weight over the stiffness
+  EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.1, 2e-4);  // sinks by its weight over the stiffness
   EXPECT_NEAR(account(simulation), 0.5 * 2 * 4 + 2 * kG * 0.1, 1e-9);
 }
 
@@ -121,12 +122,12 @@ TEST(Contact, BlockOnAnInclineSlidesAboveTheAngleOfFriction) {
   run(simulation, 1);
   const double begin = simulation.momentum().x() / 3;
   run(simulation, 2);
-  // Newton's tolerance of 1e-8 m in each step, relative to its 2e-3 s and 500 steps.
+  // Tolerance: Newton's tolerance of 1e-8 m in each step, over the step of 2e-3 s, in 500 steps.
   EXPECT_NEAR(simulation.momentum().x() / 3 - begin, kG * (std::sin(slope) - friction * std::cos(slope)), 1e-6);
   EXPECT_NEAR(account(simulation), account(block_on_incline(slope, friction)), 1e-8);
 }
 
-// What sticks drags with the force that it needs: rolling is exact in a step, but for what Newton's method leaves.
+// Sticking friction gives the force that rolling needs. Rolling is exact in a step, up to the error of Newton's method.
 TEST(Contact, BallRollsWithoutSlip) {
   const double slope = 0.4;
   Simulation simulation = simulation_of(
@@ -138,7 +139,7 @@ TEST(Contact, BallRollsWithoutSlip) {
   EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-9);
 }
 
-// By the couple s m g, until it stands. What is left of the first bounce is below 1e-6 of the weight by then.
+// The couple s m g brakes the ball to rest. The remainder of the first bounce is below 1e-6 of the weight by then.
 TEST(Contact, BallThatSpinsIsBrakedAndStands) {
   constexpr double kRadius = 0.1, kSpinning = 2e-3, kRate = 4, kPolar = 0.4 * kRadius * kRadius;
   Simulation simulation = simulation_of(
@@ -154,7 +155,7 @@ TEST(Contact, BallThatSpinsIsBrakedAndStands) {
   EXPECT_NEAR(account(simulation), total, 1e-12);
 }
 
-// With a couple of r N against it: x'' = (g sin - r g cos / R) / 1.4 down a slope, nothing where that is below 0.
+// A couple of r N acts against rolling: x'' = (g sin - r g cos / R) / 1.4 down a slope, or rest if this is negative.
 TEST(Contact, RollingMayBeResistedTo) {
   constexpr double kRadius = 0.1, kRolling = 5e-3;
   const auto roll = [&](double slope) {
@@ -177,7 +178,7 @@ TEST(Contact, RollingMayBeResistedTo) {
 
 // ---------------------------------------------------------------- several contacts, beams
 
-// Crossed bars have no corner in each other; those that lie on each other have all of them on edges.
+// Crossed bars have no corner inside of each other. On parallel bars, all corners are on edges of the other bar.
 TEST(Contact, BoxesRestOnEachOther) {
   const std::string contact = kFloor + "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>";
   const Vector3 along(0.4, 0.06, 0.05), across(0.06, 0.4, 0.05);
@@ -194,7 +195,7 @@ TEST(Contact, BoxesRestOnEachOther) {
   }
 }
 
-// Of what is fixed in the world corners and balls touch, too; and what floats is no neighbour of it.
+// Corners and balls of fixed bodies act, too. A floating body is no neighbour of the world, so it touches fixed bodies.
 TEST(Contact, PlateRestsOnFixedPostsAndBalls) {
   std::string parts =
       box("plate", 1, {0.6, 0.6, 0.04}) + floating("plate") + "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>";
@@ -223,9 +224,10 @@ TEST(Contact, EqualBoxesThatStartALittleInsideRest) {
   EXPECT_NEAR(simulation.link_pose(2).position.z(), 0.15, 5e-3) << "what they give way at most";
 }
 
-// What starts inside follows p e^(-w t / 100), w = pi / 10 per step: the first push is a hit of the speed p w / 100,
-// (1 + e) of which are given back at most. Its weight hangs back by g / w^2, as at rest: by twice that where half of
-// the points that share the stiffness bear nothing, as of boxes whose upper corners do not touch.
+// An initial penetration p decays as p e^(-w t / 100), with w = pi / 10 per step. The first push is a hit with the
+// speed p w / 100, of which at most the factor (1 + e) is given back. The weight makes the body lag behind by g / w^2,
+// as at rest. The lag is twice as large if half of the points, which share the stiffness, carry nothing, e.g. boxes
+// whose upper corners do not touch.
 TEST(Contact, WhatStartsInsideIsLetOutLittleByLittle) {
   const double h = 1e-3, frequency = kPi / (10 * h), inside = 0.05, sag = 2 * kG / (frequency * frequency);
   const double restitution = 0.3, rate = inside * frequency / 100;
@@ -244,7 +246,7 @@ TEST(Contact, WhatStartsInsideIsLetOutLittleByLittle) {
   for (const auto& [parts, starts, link, rest] : scenes) {
     Simulation simulation = simulation_of(kFloor + parts + contact, starts, h);
     ASSERT_EQ(simulation.start_warnings().size(), 1u);
-    EXPECT_NE(simulation.start_warnings()[0].text().find("they start inside of each other"), std::string::npos);
+    EXPECT_NE(simulation.start_warnings()[0].text().find("they penetrate each other at the start"), std::string::npos);
     const double total = account(simulation);
     double fastest = 0;
     while (simulation.time() < 1) {
@@ -264,7 +266,7 @@ TEST(Contact, WhatStartsInsideIsLetOutLittleByLittle) {
   }
 }
 
-// Forces at the ends of steps, and steps backwards, are not those of contact.
+// Schemes with forces at the ends of steps, and those with backward steps, do not support contact.
 TEST(Contact, SchemesThatHaveNoneAreRefused) {
   scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
   for (const std::string scheme : {"newmark", "hht1", "hht2", "hht3", "em4"}) {
@@ -294,7 +296,8 @@ TEST(Contact, PairsThatCannotTouchAreRefused) {
                std::runtime_error);
 }
 
-// Nothing turns against the smooth line of a beam: what names it so is told, and of all others it is left out.
+// Smooth lines of beams have no resistance to rotation. A contact that names such a beam and asks for this resistance
+// is an error. A contact of all pairs ignores it for beams.
 TEST(Contact, LinesResistToNoTurns) {
   std::string parts;
   for (const std::string name : {"one", "two"})
@@ -307,7 +310,7 @@ TEST(Contact, LinesResistToNoTurns) {
   EXPECT_NO_THROW(simulation_of(parts + "<contact first=\"*\" second=\"*\" spinning=\"0.01\"/>", start, 1e-3));
 }
 
-// A cantilever that its weight presses on the floor: without it its tip would hang 0.117 m low.
+// The weight of a cantilever presses it on the floor. Without the floor, its tip would be 0.117 m lower.
 TEST(Contact, CantileverRestsOnTheFloorInStatics) {
   Simulation simulation = simulation_of(
       "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
@@ -333,9 +336,10 @@ TEST(Contact, StackOfBoxesRests) {
   Simulation simulation = simulation_of(parts, starts, 2e-3);
   run(simulation, 6);
   EXPECT_LE(simulation.momentum().norm(), 1e-9);
-  // What lies above is off the middle of a face by e = 10, 10 and 5 mm: it sinks by p = load / stiffness and leans by
-  // p e / r^2, with r^2 the mean square of the points' distances, a^2/4 on the floor (24.7 kN/m), a^2/6 between boxes
-  // (12.3 kN/m): 1.2, 2.4 and 0.6 mrad with the stiffness of shallow contacts. These harden, and lean less.
+  // The load on a face is eccentric by e = 10, 10 and 5 mm. The box sinks by p = load / stiffness and leans by p e /
+  // r^2, where r^2 is the mean square of the points' distances: a^2/4 on the floor (24.7 kN/m), a^2/6 between boxes
+  // (12.3 kN/m). This gives 1.2, 2.4 and 0.6 mrad with the stiffness of shallow contacts. The contacts harden, so that
+  // the boxes lean less.
   const double leans[] = {6e-5, 3e-4, 7e-4};
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(simulation.link_pose(1 + i).position.z(), 0.05 + 0.1 * i, 5e-3) << "what they give way at most";
@@ -347,7 +351,7 @@ TEST(Contact, StackOfBoxesRests) {
   EXPECT_LE((simulation.link_pose(3).position - top).norm(), 1e-9);
 }
 
-// A gripper lifts a block and swings it round. What it holds does not creep.
+// A gripper lifts a block and swings it around. The block does not creep in the grip.
 TEST(Contact, GraspedBlockIsLiftedAndDoesNotCreep) {
   scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
   ASSERT_TRUE(result.scene);
@@ -363,7 +367,7 @@ TEST(Contact, GraspedBlockIsLiftedAndDoesNotCreep) {
   EXPECT_LE((held().position - at_rest.position).norm(), 1e-9);
 }
 
-// A beam falls on the floor and comes off again: nothing is lost, however it swings.
+// A beam falls on the floor and bounces. Its total energy stays the same, however it vibrates.
 TEST(Contact, BeamThatBouncesKeepsItsEnergy) {
   Simulation simulation = simulation_of(
       "<link name=\"rod\"><beam elements=\"6\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"

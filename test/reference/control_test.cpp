@@ -1,4 +1,4 @@
-// A controller closed on what is put out holds an arm as it would hold a real one.
+// Tests that a sampled controller with published positions and velocities holds an arm as it would hold a real one.
 #include <cstdio>
 #include <ostream>
 
@@ -12,18 +12,18 @@ struct Loop {
   std::string name;
   scene::SceneDescription (*arm)();
   double stiffness, damping;  ///< of every joint [N m/rad, N m s/rad]
-  double offset;              ///< of the set points from where the arm starts [rad]
-  double inertia;             ///< no joint moves less [kg m^2]
-  double period;              ///< of the controller [s]
+  double offset;              ///< offset of the set points from the initial positions [rad]
+  double inertia;             ///< lower bound of any joint's inertia [kg m^2]
+  double period;              ///< sample time of the controller [s]
   friend std::ostream& operator<<(std::ostream& out, const Loop& loop) { return out << loop.name; }
 };
 
 class Control : public ::testing::TestWithParam<Loop> {};
 
-// A damper and a spring between arm and world can only take energy out. The controller's are these but for its sample
-// and hold, which gives back kp T/2 of kd, far less than kd. Hence what arm and springs hold together falls, and no
-// joint goes on faster than the least inertia on the springs would. (At 100 Hz the demo's wrist is held by less than
-// 600 N m s/rad: with more a real one rings, too, as do steps of 0.05 ms.)
+// A spring and a damper between arm and world only remove energy. The controller is such a pair, except for its sample
+// and hold, which reduces kd by kp T/2, far less than kd. So the energy of arm and springs decreases, and no joint
+// moves faster than the smallest inertia on these springs would. (At 100 Hz, the demo's wrist needs less than 600 N m
+// s/rad. With more, a real arm vibrates, too, and so does one in steps of 0.05 ms.)
 TEST_P(Control, HoldsTheArm) {
   const Loop& loop = GetParam();
   scene::SceneDescription scene = loop.arm();

@@ -1,4 +1,4 @@
-// A beam is moved down across another one, against a published example.
+// Tests a beam that is moved down across another beam against a published example.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -12,21 +12,21 @@
 namespace flexarm::test::crossing_beams {
 namespace {
 
-// Example beam3_line2_genalpha_contact_penalty_twocrossedbeams of the tests of 4C Multiphysics, the program behind
-// C. Meier, W. A. Wall, A. Popp, A unified approach for beam-to-beam contact, CMAME 315 (2017) 972, in its own units:
-// a beam that is built in at both ends, and a straight one above it that is moved down and along it. It says where node
-// 8 of 20 has gone.
+// The example is beam3_line2_genalpha_contact_penalty_twocrossedbeams of the tests of 4C Multiphysics, the program
+// behind C. Meier, W. A. Wall, A. Popp, A unified approach for beam-to-beam contact, CMAME 315 (2017) 972, in its own
+// units. A straight beam above a clamped-clamped one is moved down and along. The example gives the final position of
+// node 8 of 20.
 constexpr double kLength = 5, kPenalty = 1e6, kPlace = 7 * kLength / 19;
 const Vector3 kFrom(-2.5, 0, 0), kTo(1.830127018922193, -2.5, 0), kAbove(0.8550503583141718, 2.349231551964771, 1.32);
 const Vector3 kPublished(-2.35320636690075330e-01, 8.03793046908387043e-02, -1.64147761604003972);
-// Minimum of the energy by test/elements/scripts/reference_crossing.py: with the example's 19 straight elements and its
-// contact 6e-5 off what is published; with finer meshes, and contact along the line that gives way by these depths,
-// this (76 elements; 152 are within 6e-5).
+// Results of energy minimisation by test/elements/scripts/reference_crossing.py. The example's 19 straight elements and
+// its contact give the published value to 6e-5. The numbers below are for finer meshes (76 elements; 152 differ by
+// 6e-5), and for contact along the line with these penetrations.
 constexpr double kDeep = 5.83e-3, kShallow = 2.083e-3;
 const Vector3 kWhenDeep(-0.227972, 0.077691, -1.622773), kWhenShallow(-0.228708, 0.077855, -1.625315);
 
 std::string beam(const std::string& name, const Vector3& to, double stiffer, int elements) {
-  const double shear = 5e4 * 1.1 * 0.282743, mass = 1, turned = 0.045;  // slow motions: inertia does not count
+  const double shear = 5e4 * 1.1 * 0.282743, mass = 1, turned = 0.045;  // motion is slow, so inertia has no influence
   return fmt::format(
       "<link name=\"{0}\"><beam elements=\"{1}\" order=\"2\"><centerline><line to=\"{2:.17g} {3:.17g} 0\"/>"
       "</centerline><section ea=\"{4}\" ga2=\"{5}\" ga3=\"{5}\" gj=\"{6}\" ei2=\"{7}\" ei3=\"{7}\" mass=\"{8}\" "
@@ -40,7 +40,7 @@ std::string place(const std::string& element, const Vector3& x) {
   return fmt::format("<{} xyz=\"{:.17g} {:.17g} {:.17g}\"/>", element, x.x(), x.y(), x.z());
 }
 
-/// The upper beam is 1e6 times as stiff, and held where it starts.
+/// The upper beam is 1e6 times stiffer than the lower one, and held at its start.
 Simulation crossing(int elements) {
   const Vector3 along = kTo - kFrom, across(-2 * kAbove.x(), -2 * kAbove.y(), 0);
   const auto slider = [](const std::string& parent, const std::string& child, const std::string& axis) {
@@ -62,7 +62,7 @@ Simulation crossing(int elements) {
       0.02, Vector3::Zero());
 }
 
-/// By how much the place of node 8 is off the limit for what contact gives way by [of 1.66 that it moves].
+/// Distance of node 8 from the limit for the actual penetration, relative to its displacement of 1.66.
 double error(int elements) {
   Simulation simulation = crossing(elements);
   const Vector3 begin = simulation.section(1, kPlace).pose.position;
@@ -81,8 +81,9 @@ double error(int elements) {
   return error;
 }
 
-// The line is bent within sqrt(EI / F) = 0.3 of where it is touched, as long as an element: the error falls by order 2
-// at least. What is published, with straight elements of 0.26, is 0.02 off its own limit: here it is a sixth of that.
+// The line bends within sqrt(EI / F) = 0.3 of the contact, which is the length of an element. So the error is at least
+// of order 2. The published result, with straight elements of length 0.26, is off its own limit by 0.02. Here the error
+// is a sixth of that.
 TEST(CrossingBeams, StandWhereAPublishedExampleHasThem) {
   const double coarse = error(12), fine = error(16);
   EXPECT_LT(fine, 0.02 / 6);

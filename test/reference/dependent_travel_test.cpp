@@ -1,4 +1,5 @@
-// Screw, rack and pinion, worm and cam: travel that depends on an angle, against closed forms and by their invariants.
+// Tests joints whose travel depends on an angle (screw, rack and pinion, worm, cam) against closed forms and by
+// invariants.
 #include <cmath>
 
 #include "math/pi.h"
@@ -9,7 +10,7 @@ namespace {
 
 using scene::JointKind;
 
-/// A wheel of mass 2 and rotary inertia 0.3 about its axis z on the world, by a joint with dependent travel.
+/// A wheel of mass 2 and rotary inertia 0.3 about its axis z. A joint with dependent travel connects it to the world.
 SceneBuilder wheel(JointKind kind) {
   SceneBuilder b;
   b.body("wheel", 2, Vector3::Zero(), Vector3(0.2, 0.25, 0.3).asDiagonal());
@@ -25,14 +26,14 @@ double angle(const Simulation& simulation) {
   return simulation.position(0);
 }
 
-// A constant effort or weight accelerates the wheel by Q / (J + m c^2), exactly, since every step is.
+// A constant effort or weight accelerates the wheel by Q / (J + m c^2). This is exact in every step.
 TEST(DependentTravel, ScrewUnderItsWeight) {
   SceneBuilder b = wheel(JointKind::Screw);
   b.scene.gravity = {0, 0, -9.81};
   Simulation simulation(b.scene, options("em", 0.01, 1e-12));
   run(simulation, 50);
   const double acceleration = -2 * 9.81 * 0.4 / (0.3 + 2 * 0.4 * 0.4);
-  // The tangent-scaled rule turns by 2 atan(h W / 2): third order in the angle of a step, here below 0.08.
+  // The tangent-scaled rule turns by 2 atan(h W / 2): an error of third order in the angle of a step, here below 0.08.
   EXPECT_NEAR(angle(simulation), 0.5 * acceleration * 0.25, 0.5 * 0.5 * std::abs(acceleration) * 0.25 * 0.08 * 0.08);
   EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.3 + 0.4 * angle(simulation), 1e-14);
   EXPECT_LT((simulation.link_pose(1).position.head<2>() - Eigen::Vector2d(0.1, 0.2)).norm(), 1e-14);
@@ -43,14 +44,14 @@ TEST(DependentTravel, PinionRollsOnItsRack) {
   b.probe("centre", "wheel", {0, 0, 0});
   b.scene.efforts.push_back({"joint", TimeFunction(1.5), {}});
   Simulation simulation(b.scene, options("em", 0.01, 1e-12));
-  // The centre lies beside the pitch line by the radius, and the point of contact is at rest.
+  // The centre is beside the pitch line by the radius, and the point of contact is at rest.
   EXPECT_LT((simulation.link_pose(1).position - Vector3(0.1, 0.2 - 0.4, 0.3)).norm(), 1e-15);
   run(simulation, 100);
   EXPECT_NEAR(angle(simulation), 0.5 * 1.5 / (0.3 + 2 * 0.16), 1e-4);
   const Pose pose = simulation.link_pose(1);
   EXPECT_LT((pose.position - Vector3(0.1 + 0.4 * angle(simulation), -0.2, 0.3)).norm(), 1e-14);
-  // It rolls: the node's own velocity and spin, which follow increments of travel and angle. These differ by the
-  // tangent-scaled rule, in the square of the angle of a step.
+  // The node's own velocity and spin satisfy rolling. They follow increments of travel and angle, which differ by the
+  // tangent-scaled rule, to second order in the angle of a step.
   const ProbeState centre = simulation.probe(0);
   const double spin = simulation.velocity(0), turned = 0.01 * spin;
   EXPECT_NEAR(centre.velocity.x(), 0.4 * spin, 0.4 * spin * turned * turned);
@@ -68,7 +69,7 @@ TEST(DependentTravel, WormTravelsBesideItsAxis) {
   EXPECT_LT((simulation.link_pose(1).position - Vector3(0.1 + 0.4 * angle(simulation), 0.2 - 0.15, 0.3)).norm(), 1e-13);
 }
 
-// One coordinate: its equation is (J + m f'^2) u'' + m f' f'' u'^2 = 0, so that u' follows from the energy.
+// The single coordinate obeys (J + m f'^2) u'' + m f' f'' u'^2 = 0, so u' follows from the energy.
 TEST(DependentTravel, CamKeepsItsEnergyAndFollowsItsProfile) {
   for (const bool table : {false, true}) {
     SceneBuilder b = wheel(JointKind::Cam);
@@ -83,10 +84,11 @@ TEST(DependentTravel, CamKeepsItsEnergyAndFollowsItsProfile) {
     run(simulation, 1000, [&] {
       const double u = angle(simulation), rate = simulation.velocity(0), slope = f.derivative(u);
       EXPECT_NEAR(simulation.link_pose(1).position.x(), 0.1 + f.value(u), 1e-13);
-      // What Newton leaves, 1e-15 rad times the tangent 4 J / h^2, does work on 0.015 rad in each of 1000 steps.
+      // Error of Newton's method, 1e-15 rad times the tangent 4 J / h^2, does work over 0.015 rad in each of 1000
+      // steps.
       EXPECT_NEAR(simulation.energies().total(), energy, 1000 * 1e-15 * 4 * 0.3 / (0.005 * 0.005) * 0.015);
       const double expected = std::sqrt(2 * energy / (0.3 + 2 * slope * slope));
-      EXPECT_NEAR(rate, expected, 0.03 * expected);  // velocities of slaves hold the constraint to second order
+      EXPECT_NEAR(rate, expected, 0.03 * expected);  // velocities of slaves satisfy the constraint to second order
       least = std::min(least, rate);
       most = std::max(most, rate);
     });
@@ -109,7 +111,7 @@ TEST(DependentTravel, StopsAndMotionsAreThoseOfTheAngle) {
   Simulation driver(driven.scene, options("em", 0.01));
   run(driver, 100);
   EXPECT_NEAR(driver.link_pose(1).position.x(), 0.1 + driven.scene.joints[0].profile->value(2), 1e-12);
-  // The work of the drive is the energy that it gave.
+  // The work of the drive equals the change of energy.
   const Energies e = driver.energies();
   EXPECT_NEAR(e.total() - e.work, 0.5 * 4 * 0.3, 1e-9);  // at the start f' = 0
 }

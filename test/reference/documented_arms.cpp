@@ -1,3 +1,4 @@
+// The arms of the documentation; see documented_arms.h.
 #include "reference/documented_arms.h"
 
 #include <fstream>

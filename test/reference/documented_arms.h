@@ -1,5 +1,5 @@
 #pragma once
-/// The arms that documents show.
+/// The arms that the documentation shows.
 
 #include <string>
 

@@ -1,4 +1,4 @@
-// Drives: rotors, elastic gears with backlash, losses and limits of motors, against closed formulas.
+// Tests drives against closed forms: rotors, elastic gears with backlash, losses, and limits of motors.
 #include "math/dense_eigenpairs.h"
 #include "math/pi.h"
 #include "reference/one_coordinate_scenes.h"
@@ -8,7 +8,7 @@ namespace {
 
 using scene::JointKind;
 
-// gear^2 times the rotor's inertia is added to the joint's: it moves as a heavier block does.
+// The rotor adds gear^2 times its inertia to the joint. So the block moves as a heavier one.
 TEST(Drive, RotorAddsItsReflectedInertia) {
   for (const char* scheme : {"em", "em4", "edmc2", "m1", "m2", "std", "newmark", "hht1", "hht2", "hht3"}) {
     SceneBuilder b = block_on_rail(0, 0.5), heavy = block_on_rail(0, 0.5);
@@ -29,11 +29,11 @@ TEST(Drive, RotorAddsItsReflectedInertia) {
   Simulation simulation(b.scene, options("em", 1e-4));
   simulation.command_effort(0, 1);
   run(simulation, 1000);
-  // The wheel's own increments are tangent-scaled: of second order in 1e-5 rad a step.
+  // The wheel's own increments are tangent-scaled: a second-order error of 1e-5 rad per step.
   EXPECT_NEAR(simulation.velocity(0), 0.1 / (kWheelInertia + 0.2), 1e-9);
 }
 
-// A joint that moves nothing with inertia but its rotor is no longer refused.
+// A joint that moves no inertia except its rotor is accepted.
 TEST(Drive, RotorIsEnoughToMove) {
   SceneBuilder b;
   b.body("nothing", 0, Vector3::Zero(), Matrix3::Zero());
@@ -46,7 +46,7 @@ TEST(Drive, RotorIsEnoughToMove) {
   EXPECT_NEAR(simulation.velocity(0), 0.3 / 0.1, 1e-5) << "published rates are those of tangent-scaled increments";
 }
 
-/// Frequencies and mode shapes {1, s} of a mass on a spring with a rotor on the gear behind it.
+/// Frequencies and mode shapes {1, s} of a mass on a spring, with a rotor behind an elastic gear.
 struct TwoMasses {
   double mass, rotor, gear, spring;
   double square(int mode) const {  // omega^2
@@ -54,13 +54,13 @@ struct TwoMasses {
     return 0.5 * (a + d) + (mode == 0 ? -1 : 1) * std::sqrt(0.25 * (a - d) * (a - d) + c * c);
   }
   double shape(int mode) const { return gear / (gear - rotor * square(mode)); }  // of the rotor
-  double modal_part(int mode) const {                                            // of the start {1, 1}
+  double modal_part(int mode) const {                                            // of the initial displacement {1, 1}
     const double s = shape(mode);
     return (mass + rotor * s) / (mass + rotor * s * s);
   }
 };
 
-// The mid-point rule gives every mode of a linear system the frequency 2/h atan(omega h / 2), and nothing else changes.
+// The midpoint rule changes only the frequency of each mode of a linear system, to 2/h atan(omega h / 2).
 TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   const double h = 0.01, start = 0.05;
@@ -80,14 +80,15 @@ TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
       }
       largest = std::max(largest, std::abs(simulation.position(0) - expected));
     });
-    // 2000 steps are 200 to 1000 rad: frequencies agree to 1e-8 at least. Newmark's rule starts from accelerations by a
-    // difference.
+    // The phase after 2000 steps is 200 to 1000 rad, so frequencies agree at least to 1e-8. Newmark's rule begins with
+    // accelerations from a difference, which is less accurate.
     EXPECT_LT(largest, (scheme == "em" ? 1e-8 : 1e-6) * start) << scheme;
     EXPECT_NEAR(simulation.degrees_of_freedom(), 1, 0) << "the rotor is no unknown of the step";
   }
 }
 
-// Accelerations of the Hilber-Hughes-Taylor family belong to another instant than the balance of a joint.
+// In the Hilber-Hughes-Taylor family, accelerations belong to another instant than the balance of a joint. The result
+// is of second order all the same.
 TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   SceneBuilder b = block_on_rail(0.05, 0);
@@ -109,7 +110,7 @@ TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
   }
 }
 
-// The play is entered and left at any place of a step, and nothing is lost or won.
+// The gear enters and leaves its play at any instant within a step. The energy account stays exact.
 TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
   for (const double damping : {0.0, 0.02}) {
     SceneBuilder b = block_on_rail(0, 0.3);
@@ -120,7 +121,7 @@ TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
     b.scene.springs.push_back({"rail", 200, 0.01, {}});
     b.scene.efforts.push_back({"rail", TimeFunction::parse("3*sin(40*t)"), {}});
     SimulationOptions options = test::options("em", 1e-3, 1e-13);
-    options.reuse_factorisation = false;  // quadratic: nothing is left of Newton's remainder
+    options.reuse_factorisation = false;  // quadratic convergence leaves no error of Newton's method
     Simulation simulation(b.scene, options);
     const double begin = energy_account(simulation);
     double drift = 0, scale = 0, side = 0;
@@ -141,7 +142,7 @@ TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
   }
 }
 
-// v' = (L/m) (1 - v/V): the motor's own line is a damping.
+// The motor's line acts as a damper: v' = (L/m) (1 - v/V).
 TEST(Drive, RunsUpToItsNoLoadSpeed) {
   const double limit = 5, speed = 2;
   double error[2];
@@ -164,7 +165,7 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
     EXPECT_NEAR(simulation.effort(0), 0, 1e-6);
   }
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.2);
-  // Against a load it runs where the line is the load.
+  // Against a load, the steady speed is that at which the motor's line gives the load.
   SceneBuilder b = block_on_rail(0, 0);
   scene::DriveDescription& drive = b.drive("rail", 10, 2e-3);
   drive.stiffness = 2000;
@@ -179,7 +180,8 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
   EXPECT_NEAR(simulation.velocity(0), speed * (1 - 3 / limit), 1e-4);
 }
 
-// Driving, efficiency of the effort arrives; driven, 2 - 1/efficiency of the load gets through to the motor.
+// If the motor drives the load, the fraction `efficiency` of its effort arrives. If the load drives the motor, the
+// fraction 2 - 1/efficiency of the load's effort arrives.
 TEST(Drive, LosesByItsEfficiency) {
   for (const bool is_elastic : {false, true}) {
     const double rotor = 0.5, efficiency = 0.8;
@@ -197,12 +199,12 @@ TEST(Drive, LosesByItsEfficiency) {
     b.load("block", Vector3::Zero(), {3, 0, 0});
     Simulation driven(b.scene, options("em", 1e-3, 1e-12));
     run(driven, 1000);
-    const double back = 1 / (2 - 1 / efficiency);  // the rotor resists by this much more
+    const double back = 1 / (2 - 1 / efficiency);  // the rotor's resistance is larger by this factor
     EXPECT_NEAR(driven.velocity(0), 1 + 3 / (kBlockMass + rotor * back), is_elastic ? 1e-3 : 1e-6);
   }
 }
 
-// Friction of the motor, behind the gear: by the joint's own law.
+// Friction of the motor, on the rotor's side of the gear, follows the joint's friction law.
 TEST(Drive, RotorSticks) {
   SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].friction_law.law = scene::FrictionDescription::Law::Coulomb;
@@ -227,7 +229,7 @@ TEST(Drive, RotorSticks) {
   EXPECT_NEAR(energy_account(simulation), begin, 1e-9 * simulation.energies().dissipated);
 }
 
-// A flexible arm on an elastic gear keeps its account.
+// The energy account of a flexible arm on an elastic gear closes.
 TEST(Drive, FlexibleArmKeepsItsAccount) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -252,7 +254,7 @@ TEST(Drive, FlexibleArmKeepsItsAccount) {
   EXPECT_GT(simulation.energies().dissipated, 0.1);
 }
 
-// Where the motor's effort is given, an elastic gear bends but does not change the equilibrium.
+// For a given motor effort, an elastic gear is deformed, but the equilibrium does not change.
 TEST(Drive, StaticsOfSpringAndGear) {
   SceneBuilder b = block_on_rail(0, 0);
   b.scene.initial_joints.clear();
@@ -273,7 +275,7 @@ double angular_frequency(const Mode& mode) {
   return 2 * kPi * mode.frequency;
 }
 
-// In a free motion a rotor has inertia, of which an equilibrium knows nothing.
+// Modes contain the inertia of the rotor, although the equilibrium does not depend on it.
 TEST(Drive, ModesOfTwoMasses) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   SceneBuilder b = block_on_rail(0, 0);
@@ -289,7 +291,7 @@ TEST(Drive, ModesOfTwoMasses) {
     EXPECT_NEAR(angular_frequency(modes[mode]), std::sqrt(system.square(mode)), 1e-8 * std::sqrt(system.square(mode)));
     EXPECT_TRUE(modes[mode].rate == 0);
   }
-  // With a servo on the motor in place of the spring, and its damping.
+  // With a servo on the motor instead of the spring, and with the servo's damping.
   b.scene.springs.clear();
   b.servo("rail", 500, 20);
   modes = Simulation(b.scene).natural_modes(4);

@@ -1,4 +1,4 @@
-// Flying spaghetti and scissors of Simo and Vu-Quoc (1986, 1988), reference cases D2 to D4.
+// Tests flying spaghetti and scissors of Simo and Vu-Quoc (1986, 1988), reference cases D2 to D4.
 #include "reference/dynamics_runs.h"
 
 namespace flexarm::test {
@@ -12,7 +12,7 @@ scene::DirectSection spaghetti_section(double ei) {
   return {1e4, 1e4, 1e4, 500, ei, ei, 1, 10, 10, 10};
 }
 
-/// A free beam from (6, 0) to (0, 8), loaded at its lower end; `tau` [s] is the time of the loads' peak or end.
+/// A free beam from (6, 0) to (0, 8), loaded at its lower end by forces and moments that follow `history`.
 SceneBuilder spaghetti(double ei, int elements, const Vector3& moment, const std::string& history) {
   SceneBuilder b;
   b.beam("beam", {{-6, 8, 0}}, spaghetti_section(ei), elements, 2);
@@ -26,7 +26,7 @@ SceneBuilder plane_spaghetti(int elements) {
   SceneBuilder b = spaghetti(100, elements, {0, 0, -80}, "t < 2.5 ? 1 : 0");
   return b;
 }
-/// M2 = 200 at the peak about the vertical, M3 = M2 / 2.
+/// Moments M2 = 200 about the vertical at the peak, M3 = M2 / 2.
 SceneBuilder space_spaghetti(int elements) {
   SceneBuilder b;
   b.beam("beam", {{-6, 8, 0}}, spaghetti_section(500), elements, 2);
@@ -39,7 +39,7 @@ Vector3 end_position(const Simulation& s, int probe) {
   return s.probe(probe).pose.position;
 }
 
-// The spectral reference of D2 has jumps in its loads: its own digits scatter by 1 % of L, so that 2 % are meant.
+// The spectral reference of D2 has loads that jump. Its own digits scatter by 1 % of L, so the tolerance is 2 %.
 TEST(FlyingSpaghetti, PlaneAgreesWithTheSpectralReference) {
   Simulation simulation(plane_spaghetti(10).scene, options("em", 0.025));
   run(simulation, 100);
@@ -77,7 +77,7 @@ TEST(FlyingSpaghetti, SpaceRunsHundredSecondsAtLargeSteps) {
     }
   };
   advance(50, nullptr);
-  // The mid-point rule integrates the triangle, whose kink is a step's end, exactly.
+  // The midpoint rule integrates the triangular load exactly, since its kink is at the end of a step.
   EXPECT_LT((simulation.momentum() - Vector3(50, 0, 0)).norm(), 1e-10 * 50);
   InvariantDrift drift(simulation);
   advance(950, &drift);
@@ -86,7 +86,7 @@ TEST(FlyingSpaghetti, SpaceRunsHundredSecondsAtLargeSteps) {
   EXPECT_LT(drift.angular_momentum(), 1e-9);
 }
 
-// Two links of length 5 with a hinge in the middle, loaded at the end of the second.
+// Two links of length 5 with a hinge in the middle, loaded at the end of the second link.
 TEST(FlyingScissors, ConserveAfterTheLoad) {
   SceneBuilder b;
   b.beam("first", {{-3, 4, 0}}, scene::DirectSection{1e6, 1e6, 1e6, 1e6, 1e4, 1e4, 1, 10, 10, 10}, 3, 2);

@@ -1,11 +1,11 @@
 #pragma once
-/// Free beams and trees with every kind of joint, for tests of invariants and of Newton's method.
+/// Free beams and trees of links with every kind of joint, for tests of invariants and of Newton's method.
 
 #include "reference/dynamics_runs.h"
 
 namespace flexarm::test {
 
-/// A slender flexible section: bends visibly at spins of about 1 rad/s.
+/// A slender flexible section, which bends visibly at spins of about 1 rad/s.
 inline scene::DirectSection soft_section() {
   return {2e3, 1e3, 1e3, 80, 100, 120, 1, 0.2, 0.1, 0.1};
 }
@@ -16,8 +16,8 @@ inline Matrix3 body_inertia() {
   return inertia;
 }
 
-/// A floating beam "trunk" with a "branch" on a joint of the given kind at its tip: a beam that carries a rigid body
-/// with offset centre of mass, and a rigid body on the same kind of joint at mid-span.
+/// A floating beam "trunk" with a beam "branch" on a joint of the given kind at its tip. The branch carries a rigid
+/// body with an offset centre of mass. A second rigid body is on the same kind of joint at mid-span.
 inline SceneBuilder free_tree(scene::JointKind kind) {
   SceneBuilder b;
   b.beam("trunk", {{2, 0, 0}, {3, 1, 0.5}}, soft_section(), 1, 2);
@@ -34,8 +34,8 @@ inline SceneBuilder free_tree(scene::JointKind kind) {
   return b;
 }
 
-/// A floating tree of four beams with revolute, prismatic and spherical joints. Stops keep the slider, which the spin
-/// would throw out for good; what they dissipate is part of the balance.
+/// A floating tree of four beams with revolute, prismatic and spherical joints. Stops hold the slider, which the spin
+/// would throw out otherwise. Their dissipation is part of the balance.
 inline SceneBuilder free_beam_tree() {
   using scene::JointKind;
   SceneBuilder b;
@@ -54,8 +54,8 @@ inline SceneBuilder free_beam_tree() {
   return b;
 }
 
-/// A flexible arm with a revolute shoulder, a spherical elbow and, fixed to its end, a gripper with offset mass; weak
-/// gravity.
+/// A flexible arm with a revolute shoulder, a spherical elbow, and a gripper with offset mass fixed to its end, under
+/// weak gravity.
 inline SceneBuilder flexible_arm(const scene::DirectSection& section, int fore_elements) {
   using scene::JointKind;
   SceneBuilder b;
@@ -69,7 +69,7 @@ inline SceneBuilder flexible_arm(const scene::DirectSection& section, int fore_e
   return b;
 }
 
-/// A bent, flexible beam that tumbles about no principal axis, so that it must bend and twist.
+/// A bent flexible beam that tumbles about an axis that is no principal axis, so that it bends and twists.
 inline SceneBuilder tumbling_beam() {
   SceneBuilder b;
   b.beam("beam", {{3, 0, 0}, {5, 2, 1}}, soft_section(), 2, 2);

@@ -1,4 +1,4 @@
-// What acts in joints: damping, friction, stops, motors, mimics and prescribed motions, against closed formulas.
+// Tests efforts in joints against closed forms: damping, friction, stops, motors, mimics and prescribed motions.
 #include "joints/joint_forces.h"
 #include "reference/one_coordinate_scenes.h"
 #include "schemes/scheme.h"
@@ -28,7 +28,7 @@ TEST(JointFriction, SlidesWithConstantDeceleration) {
   b.scene.joints[0].friction = 3;
   Simulation simulation(b.scene, options("em", 0.01));
   run(simulation, 100);
-  // tanh(v / 1 mm/s) is 1 to round-off while it slides.
+  // While it slides, tanh(v / 1 mm/s) is 1 to round-off.
   EXPECT_NEAR(simulation.velocity(0), 2 - 3 / kBlockMass, 1e-9);
   EXPECT_NEAR(simulation.energies().dissipated, 3 * simulation.position(0), 1e-9);
   run(simulation, 200);  // would stop at 4/3 s
@@ -42,7 +42,7 @@ TEST(JointFriction, SticksBelowItsLimit) {
   Simulation simulation(b.scene, options("em", 0.01));
   simulation.command_effort(0, 2.4);
   run(simulation, 500);
-  // Smooth law: it creeps at v_s atanh(F / F_c), no faster.
+  // With the smooth law it creeps at v_s atanh(F / F_c).
   EXPECT_NEAR(simulation.position(0), 5 * 1e-3 * std::atanh(0.8), 1e-4);
   simulation.command_effort(0, 4);
   const double before = simulation.velocity(0);
@@ -57,7 +57,7 @@ double restitution(const SceneBuilder& builder, double step, double speed) {
     EXPECT_TRUE(simulation.step().converged);
     after = simulation.velocity(0);
   }
-  // Until it has left the stop.
+  // Continues until the block has left the stop.
   for (int n = 0; n < 200; ++n) {
     EXPECT_TRUE(simulation.step().converged);
     after = std::min(after, simulation.velocity(0));
@@ -65,7 +65,7 @@ double restitution(const SceneBuilder& builder, double step, double speed) {
   return -after / speed;
 }
 
-// The documented restitution 0.3 is that of the continuous impact; ten steps resolve it to a few per cent.
+// The documented restitution 0.3 is that of the continuous impact. Ten steps resolve it to a few per cent.
 TEST(JointLimit, ReboundsWithTheDocumentedRestitution) {
   for (const double speed : {0.2, 2.0}) {
     SceneBuilder b = block_on_rail(0, speed);
@@ -110,8 +110,7 @@ TEST(JointMotor, EffortHistoryGivesItsImpulse) {
   b.scene.efforts.push_back({"shaft", TimeFunction::parse("0:0 1:5 2:0"), {}});
   Simulation simulation(b.scene, options("em", 0.01));
   run(simulation, 200);
-  // The tangent-scaled rotation increment differs from the angle by (w h)^2 / 12; the energy balance knows nothing of
-  // it.
+  // The tangent-scaled rotation increment differs from the angle by (w h)^2 / 12. The energy balance is not affected.
   const double speed = 5 / kWheelInertia;
   EXPECT_NEAR(simulation.velocity(0), speed, speed * std::pow(speed * 0.01, 2) / 12);
   EXPECT_NEAR(simulation.energies().work, simulation.energies().kinetic, 1e-10 * simulation.energies().kinetic);
@@ -133,13 +132,14 @@ TEST(JointMimic, FollowsToRoundOffAndSharesTheInertia) {
     ASSERT_NEAR(simulation.position(1), ratio * simulation.position(0) + offset,
                 1e-13 * (1 + std::abs(simulation.position(1))));
   });
-  // (J_1 + ratio^2 J_2) u'' = Q, but for the tangent scaling of rotation increments of up to 0.12 rad.
+  // Equation (J_1 + ratio^2 J_2) u'' = Q, up to the tangent scaling of rotation increments of up to 0.12 rad.
   const double speed = 2 * 2.0 / (0.2 + ratio * ratio * 0.1), scaling = std::pow(ratio * speed * 0.01, 2) / 12;
   EXPECT_NEAR(simulation.velocity(1), ratio * simulation.velocity(0), scaling * std::abs(ratio) * speed);
   EXPECT_NEAR(simulation.velocity(0), speed, scaling * speed);
 }
 
-// A pendulum driven along theta(t): torque J theta'' + m g a sin(theta), from the third step on.
+// A pendulum driven along theta(t) needs the torque J theta'' + m g a sin(theta). It is compared from the third step
+// on.
 TEST(PrescribedMotion, FollowsItsFunctionAndBalancesInverseDynamics) {
   const double mass = 1.5, arm = 0.4, about_center = 0.2, amplitude = 0.8, rate = 3;
   SceneBuilder b;

@@ -1,4 +1,5 @@
-// Newton's method converges quadratically on a large-rotation step: its tangent is the residual's derivative.
+// Tests that Newton's method converges quadratically in a step with large rotations, so that its tangent is the
+// derivative of the residual.
 #include <cstdio>
 
 #include "reference/dynamics_joint_chain.h"
@@ -9,8 +10,8 @@ namespace {
 
 using scene::JointKind;
 
-/// Exponent p of e_{k+1} = e_k^p for the last pair of scaled updates above round-off; 2 in the limit, but for the
-/// constant.
+/// Exponent p of e_{k+1} = e_k^p for the last pair of scaled updates above round-off. In the limit it is 2, up to a
+/// constant factor.
 double observed_exponent(const std::vector<double>& norms) {
   double exponent = 0;
   for (std::size_t k = 0; k + 1 < norms.size(); ++k)

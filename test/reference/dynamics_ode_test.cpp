@@ -1,3 +1,4 @@
+// Tests the ODE solver of the reference solutions on equations with known solutions.
 #include <cmath>
 
 #include <gtest/gtest.h>

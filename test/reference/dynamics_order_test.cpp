@@ -1,4 +1,4 @@
-// Tip histories converge at second order in time to a self-converged reference.
+// Tests that tip histories converge with the order of each scheme to an extrapolated reference.
 #include <cstdio>
 #include <vector>
 
@@ -17,8 +17,8 @@ struct Problem {
   double coarsest_step;  ///< [s]
 };
 
-/// Right-angle cantilever of case D5, through loading and the first free swing.
-/// Coarse meshes, too: their elements turn a lot, which an energy correction must not feel.
+/// Right-angle cantilever of case D5, through loading and the first free swing. Coarse meshes are tested as well: their
+/// elements rotate far, which must not affect energy corrections.
 Problem right_angle_cantilever(int elements) {
   SceneBuilder b;
   b.beam("arm", {{10, 0, 0}, {10, 10, 0}}, scene::DirectSection{1e6, 1e6, 1e6, 1e3, 1e3, 1e3, 1, 20, 10, 10}, elements,
@@ -29,7 +29,7 @@ Problem right_angle_cantilever(int elements) {
   return {"right_angle_cantilever_" + std::to_string(elements), b, 3, 0.1};
 }
 
-/// Flying spaghetti of case D3; its loads have no jumps, so that schemes with end-point loads keep their order.
+/// Flying spaghetti of case D3. Its loads have no jumps, so that schemes with end-point loads keep their order.
 Problem flying_spaghetti() {
   SceneBuilder b;
   b.beam("beam", {{-6, 8, 0}}, scene::DirectSection{1e4, 1e4, 1e4, 500, 500, 500, 1, 10, 10, 10}, 8, 2);
@@ -39,7 +39,7 @@ Problem flying_spaghetti() {
   return {"flying_spaghetti", b, 4, 0.05};
 }
 
-/// Thrown in space and pushed by a follower force.
+/// The flexible arm, thrown in space and pushed by a follower force.
 Problem arm_with_joints() {
   SceneBuilder b = flexible_arm(soft_section(), 2);
   b.load("fore", {0, 1, 0.2}, {3, 0, 2}, {0, 0.5, 0}, "1-cos(t)", scene::LoadFrame::Follower);
@@ -59,7 +59,7 @@ Problem damped_arm(const std::string& name, double damping) {
   return problem;
 }
 
-/// Tip positions every `coarsest_step`.
+/// Tip positions at multiples of `coarsest_step`.
 History tip_history(const Problem& problem, const IntegratorDescription& integrator, int refinement) {
   scene::SceneDescription scene = problem.scene.scene;
   scene.integrator = integrator;
@@ -86,12 +86,12 @@ class OrderInTime : public ::testing::TestWithParam<std::tuple<SchemeVariant, Pr
 TEST_P(OrderInTime, TipHistory) {
   const auto [variant, problem] = GetParam();
   const int order = variant.scheme.order;
-  // Steps at which each order is seen: above round-off, below the pre-asymptotic range.
+  // Refinements at which each order is visible: errors are above round-off and in the asymptotic range.
   const std::vector<int> refinements =
       order == 4 ? std::vector<int>{8, 16, 32, 64} : std::vector<int>{4, 8, 16, 32, 64};
   std::vector<History> runs;
   for (const int refinement : refinements) runs.push_back(tip_history(problem, variant.integrator, refinement));
-  // The reference is extrapolated from the two finest runs (Richardson): its own error is of higher order.
+  // Richardson extrapolation from the two finest runs gives the reference. Its own error is of higher order.
   History reference = runs.back();
   const double factor = 1 / (std::pow(2.0, order) - 1);
   for (std::size_t i = 0; i < reference.size(); ++i)
@@ -113,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(Joints, OrderInTime,
                                             ::testing::Values(arm_with_joints())),
                          name_of);
 
-/// At the usual alpha what is of first order in it hides behind the rest.
+/// Schemes with a strong dissipation alpha. At the usual alpha, terms of first order in alpha would be hidden by other
+/// terms.
 std::vector<SchemeVariant> strong_hht() {
   std::vector<SchemeVariant> strong;
   for (SchemeVariant variant : scheme_variants())
@@ -134,14 +135,14 @@ std::vector<SchemeVariant> variants(const std::vector<std::string>& names) {
   return selected;
 }
 
-// Stronger than every step, and weaker than most.
+// One relaxation time is longer than every step, the other one is shorter than most steps.
 INSTANTIATE_TEST_SUITE_P(
     StructuralDamping, OrderInTime,
     ::testing::Combine(::testing::ValuesIn(variants({"em", "em0", "em_symmetric", "edmc1", "edmc2"})),
                        ::testing::Values(damped_arm("strongly_damped_arm", 0.05), damped_arm("damped_arm", 1e-3))),
     name_of);
 
-// A backward step drives what damping makes stiff, so it is weaker than every step here.
+// A backward step feeds energy into modes that the damping makes stiff. So this damping is weaker than every step.
 INSTANTIATE_TEST_SUITE_P(WeakStructuralDamping, OrderInTime,
                          ::testing::Combine(::testing::ValuesIn(variants({"em4"})),
                                             ::testing::Values(damped_arm("weakly_damped_arm", 1e-4))),

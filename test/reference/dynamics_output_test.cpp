@@ -1,4 +1,4 @@
-// What is put out of velocities and efforts: of second order at its time stamp, and nothing rings in it.
+// Tests published velocities and efforts: they are of second order at their time stamp, and do not oscillate.
 #include <cstdio>
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kCoarsestStep = 0.02, kUntil = 1, kJumpsAt = 0.5;
 
-/// So much rotary inertia that the steps resolve its fastest modes.
+/// An arm with so much rotary inertia that the steps resolve its fastest modes.
 SceneBuilder arm() {
   const scene::DirectSection slow{2e3, 1e3, 1e3, 80, 100, 120, 4, 4, 4, 4};
   SceneBuilder b = flexible_arm(slow, 1);
@@ -35,8 +35,8 @@ SceneBuilder driven_arm() {
   return b;
 }
 
-/// Every kCoarsestStep, so that no stamp is within three steps behind the start or the jump; but for the one at the end
-/// of the step with the jump, to whose accelerations at its end Newmark's rule gives a half of it.
+/// Output at multiples of kCoarsestStep, so that no stamp is within three steps after the start or the jump. The stamp
+/// at the end of the step with the jump is left out: there, Newmark's accelerations contain only half of the jump.
 struct Output {
   std::vector<double> rates, points, efforts;
 };
@@ -65,7 +65,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// The slope of the error over the step, from three runs and what the two finest of four extrapolate to.
+/// Order of the error in the step, from three runs. The reference is extrapolated from the two finest of four runs.
 double slope(const std::vector<Output>& runs, std::vector<double> Output::*quantity, int order) {
   const std::vector<double>&fine = runs[runs.size() - 1].*quantity, &coarser = runs[runs.size() - 2].*quantity;
   std::vector<double> reference = fine;
@@ -79,7 +79,7 @@ double slope(const std::vector<Output>& runs, std::vector<double> Output::*quant
 class PublishedOrder : public ::testing::TestWithParam<Scheme> {
  protected:
   std::vector<Output> runs(const SceneBuilder& builder) const {
-    // Terms of second order hide those of first order longer than the next ones hide theirs.
+    // For a scheme of first order, terms of second order are small only in finer steps than otherwise needed.
     const int coarsest = GetParam().order == 1 ? 64 : 16;
     std::vector<Output> out;
     for (const int finer : {1, 2, 8, 16}) out.push_back(output(builder, GetParam(), coarsest * finer));
@@ -105,7 +105,7 @@ TEST_P(PublishedOrder, VelocitiesAndEffortsOfAMotion) {
 INSTANTIATE_TEST_SUITE_P(Schemes, PublishedOrder, ::testing::ValuesIn(schemes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// The effort that drives I = 1 along sin 3t is -9 sin 3t.
+/// The effort that moves I = 1 along sin 3t is -9 sin 3t.
 TEST(PublishedEffort, OfAnInertiaThatAMotionDrives) {
   SceneBuilder b;
   b.body("wheel", 1, Vector3::Zero(), Matrix3::Identity());
@@ -116,7 +116,8 @@ TEST(PublishedEffort, OfAnInertiaThatAMotionDrives) {
     for (const int k : {0, 1}) {
       const double step = k == 0 ? 0.01 : 0.005;
       Simulation simulation(b.scene, options(std::string(scheme.name), step, 1e-11));
-      // A mean of two steps and its change need three. Where the root is not -1, its error has to decay.
+      // The formula needs three steps: a mean of two steps, and its change. If the scheme's root is not -1, the error
+      // of the start must decay first.
       run(simulation, scheme.hht == HhtForm::None ? 3 : static_cast<int>(std::lround(1 / step)));
       run(simulation, static_cast<int>(std::lround(2 / step)),
           [&] { error[k] = std::max(error[k], std::abs(simulation.effort(0) + 9 * std::sin(3 * simulation.time()))); });
@@ -127,7 +128,7 @@ TEST(PublishedEffort, OfAnInertiaThatAMotionDrives) {
 
 // ---------------------------------------------------------------- the guide's second arm
 
-/// Shoulder velocity every millisecond; beside it the increments of the position over the millisecond.
+/// Shoulder velocity every millisecond, and the increments of the position over each millisecond.
 struct Velocities {
   std::vector<double> published, increments;
 };
@@ -146,18 +147,19 @@ Velocities velocities(const std::string& scheme, double damping, int steps_per_m
   return out;
 }
 
-/// Root mean square of a difference over stamps, from 10 ms behind the start and the jump at 1 s.
+/// Root mean square of a difference over stamps `from` to `to`. The stamps begin 10 ms after the start or the jump at 1
+/// s, or at the jump.
 double difference(const std::vector<double>& a, const std::vector<double>& b, std::size_t from, std::size_t to) {
   double sum = 0;
   for (std::size_t n = from; n < to; ++n) sum += (a[n] - b[n]) * (a[n] - b[n]);
   return std::sqrt(sum / static_cast<double>(to - from));
 }
 
-// Waves run off from the motor when its torque jumps, much shorter than a step: what is published in the 10 ms behind
-// the jump is no farther from a fine solution than differences of positions are. (Where changes do not agree it is
-// these.)
+// After a jump of the motor's torque, waves that are much shorter than a step run along the arm. In the 10 ms after the
+// jump, the error of published velocities is at most that of differences of positions. (If changes of the rate do not
+// agree, the published velocity is such a difference.)
 TEST(PublishedVelocity, IsNoWorseThanIncrementsBehindAJumpOfTorque) {
-  constexpr double kSame = 1e-2;  // they are the same but for a step whose changes agree by chance
+  constexpr double kSame = 1e-2;  // equal, except for steps whose changes agree by chance
   for (const double damping : {1e-3, 1e-4}) {
     const Velocities fine = velocities("em", damping, 50);
     double speed = 0;
@@ -173,8 +175,8 @@ TEST(PublishedVelocity, IsNoWorseThanIncrementsBehindAJumpOfTorque) {
   }
 }
 
-// The jump leaves energy in modes that no step resolves, and the scheme's own velocities keep it for ever. Plain
-// increments are what a user would take instead: they do not ring, but lag by half a step.
+// The jump excites modes that no step resolves, and the scheme's own velocities keep this oscillation forever. Plain
+// increments, which a user could take instead, do not oscillate but lag by half a step.
 TEST(PublishedVelocity, DoesNotRingAfterAJumpOfTorque) {
   for (const auto& [scheme, damping] :
        {std::pair<std::string, double>{"em", 1e-3}, {"em", 1e-4}, {"edmc2", 1e-3}, {"edmc2", 1e-4}}) {

@@ -1,4 +1,4 @@
-// Right-angle cantilever of Simo and Vu-Quoc (1988), reference case D5.
+// Tests the right-angle cantilever of Simo and Vu-Quoc (1988), reference case D5.
 #include <vector>
 
 #include "reference/dynamics_runs.h"
@@ -46,7 +46,7 @@ void keep_largest(Extremum& e, double value, double time) {
   if (value > e.value) e = {value, time};
 }
 
-// Published: 40 linear elements per leg, step 0.005 s; scatter of values between meshes is 1 %.
+// The published run has 40 linear elements per leg and the step 0.005 s. Values scatter by 1 % between meshes.
 TEST(RightAngleCantilever, ExtremaAgreeWithPublishedCurves) {
   Simulation simulation(right_angle_cantilever(12, 2).scene, options("em", 0.025));
   Extremum tip_max{-1e9, 0}, tip_min{-1e9, 0}, elbow_min{-1e9, 0};

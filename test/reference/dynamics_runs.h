@@ -1,5 +1,5 @@
 #pragma once
-/// What the dynamic reference tests share: stepping with checks, and drifts of invariants.
+/// Functions that the dynamic reference tests share: runs with checks, and drifts of invariants.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace flexarm::test {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kGravity = 9.81;  // m/s^2
-/// Of hinges whose links move in the x-z plane.
+/// Axis of hinges whose links move in the x-z plane.
 const Vector3 kAcross(0, 1, 0);
 
 inline SimulationOptions options(const std::string& scheme, double step, double tolerance = 1e-8) {
@@ -28,7 +28,7 @@ inline SimulationOptions options(const std::string& scheme, double step, double 
   return out;
 }
 
-/// `steps` steps, `observe()` after each; stops with a test failure where a step does not converge.
+/// Makes `steps` steps, with `observe()` after each. A step that does not converge is a test failure and ends the run.
 template <class Observe>
 void run(Simulation& simulation, int steps, const Observe& observe) {
   for (int n = 0; n < steps; ++n) {
@@ -48,14 +48,14 @@ inline double total_mass(const Simulation& simulation) {
   return mass;
 }
 
-/// What stays the same: energy, less what came in, with what went out [J].
+/// The constant of the energy account: energy - work + dissipation [J].
 inline double energy_account(const Simulation& simulation) {
   const Energies e = simulation.energies();
   return e.total() - e.work + e.dissipated;
 }
 
-/// Largest change of energy and momenta since construction, relative to their largest values; that of the linear
-/// momentum relative to sqrt(2 m T), because the total may vanish while its parts do not.
+/// Largest change of energy and momenta since construction, relative to their largest values. The linear momentum is
+/// relative to sqrt(2 m T), because the total may vanish although its parts do not.
 class InvariantDrift {
  public:
   explicit InvariantDrift(const Simulation& simulation)
@@ -74,7 +74,7 @@ class InvariantDrift {
     linear_drift_ = std::max(linear_drift_, (simulation_.momentum() - linear_).norm());
     angular_drift_ = std::max(angular_drift_, (simulation_.angular_momentum() - angular_).norm());
   }
-  /// Of total - work + dissipated.
+  /// Drift of total - work + dissipated.
   double energy() const { return energy_ / energy_scale_; }
   double momentum() const { return linear_drift_ / linear_scale_; }
   double angular_momentum() const { return angular_drift_ / angular_scale_; }
@@ -95,8 +95,8 @@ inline void initial_joint(SceneBuilder& builder, const std::string& coordinate, 
   builder.scene.initial_joints.push_back({coordinate, position, velocity, {}});
 }
 
-/// Shifts the velocity of the first initial field so that the centre of mass moves with `drift`: a body that stays near
-/// the origin keeps its angular momentum free of the round-off of large distances.
+/// Changes the velocity of the first initial field such that the centre of mass moves with `drift`. Near the origin,
+/// the angular momentum has no round-off of large distances.
 inline void set_drift(SceneBuilder& builder, const Vector3& drift) {
   const Simulation simulation(builder.scene);
   builder.scene.initial_links.front().linear += drift - simulation.momentum() / total_mass(simulation);

@@ -1,4 +1,4 @@
-// Spin-up of a flexible beam (Kane; Simo and Vu-Quoc), reference case D6, without numerical damping.
+// Tests the spin-up of a flexible beam (Kane; Simo and Vu-Quoc), reference case D6, without numerical damping.
 #include <cstdio>
 
 #include "math/pi.h"
@@ -20,13 +20,13 @@ SceneBuilder spin_up() {
   return b;
 }
 
-/// Position of the tip in the frame that turns with the hub.
+/// Position of the tip in the frame that rotates with the hub.
 Vector3 tip_in_hub(const Simulation& simulation) {
   const double angle = simulation.position(0);
   return Eigen::AngleAxisd(-angle, Vector3::UnitZ()) * simulation.probe(0).pose.position;
 }
 
-/// Integral of the axial strain; by the trapezoidal rule between nodes, exact for its linear interpolant.
+/// Integral of the axial strain by the trapezoidal rule between nodes. It is exact for the linear interpolant.
 double stretch(const Simulation& simulation) {
   static std::vector<BeamPoint> points;
   points.clear();
@@ -54,19 +54,20 @@ TEST_P(SpinUp, CompletesAndKeepsTheSteadyStretch) {
   double mean = 0, deflection = 0;
   int n = 0;
   run(simulation, steady, [&] {
-    const double window = 1 - std::cos(2 * kPi * ++n / steady);  // its mean is 1; suppresses the ends of the interval
+    // Weights with the mean 1, which suppress the ends of the interval
+    const double window = 1 - std::cos(2 * kPi * ++n / steady);
     mean += window * stretch(simulation) / steady;
     deflection = std::max(deflection, std::abs(tip_in_hub(simulation).y()));
   });
-  // Radial equilibrium EA u'' + m W^2 (x + u) = 0. A steady turn by W h per step has chords in place of arcs: the
-  // scheme's equilibrium is that of the speed 2 tan(W h / 2) / h, exactly.
+  // Radial equilibrium: EA u'' + m W^2 (x + u) = 0. A steady rotation by W h per step has chords instead of arcs: the
+  // scheme's equilibrium is exactly that of the speed 2 tan(W h / 2) / h.
   const double speed = 2 * std::tan(0.5 * kSpeed * step) / step;
   const double k = std::sqrt(kMass * speed * speed / kAxialStiffness);
   const double expected = std::tan(k * kLength) / k - kLength;
   std::printf("step %g: lag %.4f at %.2f s, residual deflection %.4f, stretch off by %.1e of %.6e\n", step, lag,
               lag_time, deflection, mean - expected, expected);
   EXPECT_LT(deflection, 0.01 + 20 * step * step) << "returns to zero but for the step's second-order error";
-  const double vibration = deflection * 1.2 * kSpeed;  // speed of the residual vibration at about its frequency
+  const double vibration = deflection * 1.2 * kSpeed;  // speed of the residual vibration, at about its frequency
   EXPECT_NEAR(mean, expected, (1e-5 + std::pow(vibration / (kSpeed * kLength), 2)) * expected);
 }
 INSTANTIATE_TEST_SUITE_P(Steps, SpinUp, ::testing::Values(0.05, 0.01, 0.005));

@@ -1,4 +1,4 @@
-// Dry friction: sticking, stopping, and friction that grows with the force on the joint, against closed formulas.
+// Tests dry friction against closed forms: sticking, stopping, and friction that grows with the force on the joint.
 #include "reference/dynamics_joint_chain.h"
 #include "reference/one_coordinate_scenes.h"
 
@@ -8,7 +8,7 @@ namespace {
 using scene::JointKind;
 using Law = scene::FrictionDescription::Law;
 
-/// A block on a rail along x, which falls by the angle `slope`; positive is uphill.
+/// A block on a rail along x. The rail is inclined by the angle `slope`, and positive positions are uphill.
 SceneBuilder incline(double slope, double coefficient, double velocity) {
   SceneBuilder b;
   b.scene.gravity = kGravity * Vector3(-std::sin(slope), 0, -std::cos(slope));
@@ -19,7 +19,7 @@ SceneBuilder incline(double slope, double coefficient, double velocity) {
   return b;
 }
 
-/// The same with a stiff, light beam for a rail.
+/// The same block on a stiff, light beam instead of a rail.
 SceneBuilder beam_incline(double slope, double coefficient, double velocity) {
   SceneBuilder b = incline(slope, coefficient, velocity);
   b.beam("line", {{2, 0, 0}}, section(1e9, 1e9, 1e8, 1e8, 1e-3, 1e-6, 1e-6), 2, 2);
@@ -61,8 +61,8 @@ TEST(Incline, SlidesAboveTheAngleOfFriction) {
   }
 }
 
-// The beam bends by 1e-7 at most, and with it the normal force changes its direction. Nothing presses before it has
-// bent: the damped beam takes some steps to take up the load, during which the block moves a little.
+// The beam bends by at most 1e-7, which changes the direction of the normal force. There is no normal force before the
+// beam has bent: the damped beam takes up the load over some steps, during which the block moves a little.
 TEST(Incline, HoldsOnAStiffBeam) {
   const double slope = 0.4, coefficient = 0.3;
   SceneBuilder steep = beam_incline(slope, std::tan(slope) * 1.01, 0);
@@ -80,8 +80,8 @@ TEST(Incline, HoldsOnAStiffBeam) {
   EXPECT_NEAR(sliding.position(0) - 1, travel, 10 * bend * std::abs(travel));
 }
 
-// It stops within the step in which v <= F h / m: the way of the mean velocity is longer than the exact one by at most
-// F/m h^2 / 8.
+// The block stops within the step in which v <= F h / m. The distance of the mean velocity is longer than the exact one
+// by at most F/m h^2 / 8.
 TEST(Incline, DecelerationStopsAfterTheDistanceOfStopping) {
   const double coefficient = 0.35, deceleration = coefficient * kGravity;
   for (const double velocity : {1.0, -0.77, 0.01})
@@ -98,7 +98,8 @@ TEST(Incline, DecelerationStopsAfterTheDistanceOfStopping) {
     }
 }
 
-// Up the hill, to a halt, and there it stays; or down again if the hill is steep. The turn costs a few steps' way.
+// The block moves up to a halt and stays there, or slides down again if the incline is steep. The reversal costs the
+// distance of a few steps.
 TEST(Incline, StopsOrTurnsOnTheWayUp) {
   const double slope = 0.4, step = 0.01;
   for (const double coefficient : {0.6, 0.2}) {
@@ -109,7 +110,8 @@ TEST(Incline, StopsOrTurnsOnTheWayUp) {
     double expected = 1 / (2 * up);
     const double falling = simulation.time() - 1 / up;
     if (down > 0) expected -= 0.5 * down * falling * falling;
-    const double late = (down > 0 ? down * falling : 0) + up * step;  // change of way where it turns a step too late
+    // Change of the distance if the reversal is one step late
+    const double late = (down > 0 ? down * falling : 0) + up * step;
     EXPECT_NEAR(simulation.position(0), expected, late * step);
     if (down < 0) {
       const double rest = simulation.position(0);
@@ -134,16 +136,16 @@ TEST(Incline, PushedAgainstAStopAndBack) {
 
 // ---------------------------------------------------------------- pendulum with a bearing
 
-/// Where a point pendulum of length l turns next after it turned at `from`, moving in the direction `sign`, with the
-/// moment mu r |force| in its bearing: w = (dtheta/dt)^2 obeys dw/dtheta + 2 s c w = -2 g/l (sin + s c cos), with
-/// c = mu r/l / sqrt(1 - (mu r/l)^2), as the bearing's force has the radial part m (g cos + l w) and the moment's
+/// Next turning point of a point pendulum of length l that turned at `from` and moves in the direction `sign`. Its
+/// bearing has the friction moment mu r |force|. w = (dtheta/dt)^2 obeys dw/dtheta + 2 s c w = -2 g/l (sin + s c cos),
+/// with c = mu r/l / sqrt(1 - (mu r/l)^2). The bearing's force has the radial part m (g cos + l w) and the moment's
 /// share.
 double next_turn(double from, double sign, double length, double lever) {
   const double q = kGravity / length, c = sign * (lever / length) / std::sqrt(1 - std::pow(lever / length, 2));
   const double B = -6 * q * c / (1 + 4 * c * c), A = 2 * q + 2 * c * B;
   const auto particular = [&](double x) { return A * std::cos(x) + B * std::sin(x); };
   const auto w = [&](double x) { return particular(x) - particular(from) * std::exp(-2 * c * (x - from)); };
-  double inside = 0, outside = -from;  // friction: it does not come so far
+  double inside = 0, outside = -from;  // because of friction it turns before -from
   for (int n = 0; n < 100; ++n) {
     const double middle = 0.5 * (inside + outside);
     (w(middle) > 0 ? inside : outside) = middle;
@@ -168,7 +170,8 @@ TEST(Pendulum, LosesPerHalfSwingWhatItsBearingTakes) {
         extreme = angle;
       } else if (turns < 4 && sign * (angle - extreme) < -1e-6) {
         exact = next_turn(exact, sign, length, lever);
-        // Sampling and turning cost up to a h^2 each, a = g/l the largest acceleration; the smooth law has its speed.
+        // Sampling and reversal have errors of up to a h^2 each, with the largest acceleration a = g/l. The smooth law
+        // adds the error of its creeping speed.
         const double tolerance = 2 * (++turns) * kGravity / length * step * step + (law == Law::Smooth ? 1e-3 : 0);
         EXPECT_NEAR(extreme, exact, tolerance) << "turn " << turns;
         sign = -sign;
@@ -180,8 +183,8 @@ TEST(Pendulum, LosesPerHalfSwingWhatItsBearingTakes) {
 
 // ---------------------------------------------------------------- stick and slip
 
-/// A disc on a torsion spring, at rest, and a drum that turns on it with the constant friction moment M. They slip
-/// until their rates agree, then swing together until the drum's inertia asks for more than M.
+/// A disc at rest on a torsion spring, and a rotating drum on it with the constant friction moment M. They slip until
+/// their rates agree. Then they swing together, until the drum's inertia needs more than M.
 struct StickSlipOrbit {
   double k = 50, disc = 0.3, drum = 0.5, moment = 2, speed = 1;
 
@@ -240,7 +243,7 @@ TEST(StickSlipOrbit, FollowsTheClosedForm) {
       }
       before = angle;
     });
-    // Decisions fall once in a step, and the efforts that they compare are means over a step.
+    // Transitions are decided once per step, by means of the efforts over the step.
     EXPECT_NEAR(stuck_from, slip, 2 * step);
     EXPECT_NEAR(stuck_to, slip + stick, 2 * step);
   }
@@ -250,7 +253,7 @@ TEST(StickSlipOrbit, FollowsTheClosedForm) {
 
 // ---------------------------------------------------------------- couplings
 
-// A follower's friction acts on the coordinate that carries it, by the absolute value of the ratio.
+// A mimic's friction acts on the coordinate that it mimics, multiplied by the absolute value of the ratio.
 TEST(FollowersFriction, AddsToTheThreshold) {
   for (const double ratio : {2.0, -2.0}) {
     SceneBuilder b;
@@ -293,7 +296,7 @@ TEST(SphericalFriction, HoldsARotationExactly) {
   EXPECT_GT(simulation.velocity(0), 0.3);
 }
 
-// Components of free rotations stick each for itself, beside others that do.
+// Components of free rotations stick independently of each other.
 TEST(SphericalFriction, SlipsAboutOneAxisOnly) {
   SceneBuilder b;
   b.body("ball", 1, {0, 0, 0}, Matrix3::Identity());

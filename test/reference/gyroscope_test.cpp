@@ -1,4 +1,4 @@
-// Rotors that have an axis: gyroscopes, against spinning bodies and by what is conserved.
+// Tests gyroscopes, i.e. rotors with an axis, against spinning bodies and by conserved quantities.
 #include <cmath>
 
 #include "reference/dynamics_runs.h"
@@ -8,8 +8,8 @@ namespace {
 
 using scene::JointKind;
 
-/// A frame on a ball joint that carries a wheel on its axis z, spinning relative to it, and a pendulum's weight. With a
-/// rotor the wheel's inertia about the axis is the drive's.
+/// A frame on a ball joint carries a spinning wheel on its axis z, and a pendulum weight. With `is_rotor`, the wheel's
+/// inertia about the axis belongs to the drive.
 SceneBuilder gyroscope(bool is_rotor, double spin) {
   const double axial = 0.02;
   SceneBuilder b;
@@ -29,7 +29,8 @@ SceneBuilder gyroscope(bool is_rotor, double spin) {
   return b;
 }
 
-// A rotor with an axis is a wheel on its parent: precession and nutation of a flexible top agree with those of a body.
+// A rotor with an axis acts as a wheel on its parent: precession and nutation of a flexible top agree with those of a
+// spinning body.
 TEST(Gyroscope, AgreesWithASpinningBody) {
   for (const char* scheme : {"em", "m1", "std"}) {
     double error[2];
@@ -45,13 +46,14 @@ TEST(Gyroscope, AgreesWithASpinningBody) {
           << "it precesses";
       EXPECT_NEAR(rotor.energies().kinetic, body.energies().kinetic, 1e-3 * body.energies().kinetic);
     }
-    // The wheel's increments are tangent-scaled, the rotor's are not: both are of second order.
+    // The wheel's increments are tangent-scaled, the rotor's are not. Both have errors of second order.
     EXPECT_LT(error[1], 2e-4) << scheme;
     EXPECT_GT(std::log2(error[0] / error[1]), 1.7) << scheme;
   }
 }
 
-// Without weight and with a motor that works between frame and rotor nothing of energy and angular momentum is lost.
+// Without gravity, and with a motor that acts between frame and rotor, energy account and angular momentum stay
+// constant.
 TEST(Gyroscope, KeepsEnergyAndAngularMomentum) {
   for (const bool is_elastic : {false, true}) {
     SceneBuilder b;

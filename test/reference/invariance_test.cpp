@@ -1,4 +1,4 @@
-// What must not change the answer: the orientation of the scene in space, and a weld in a beam.
+// Tests that the orientation of the scene in space, and a weld within a beam, do not change results.
 #include "math/pi.h"
 #include "reference/dynamics_joint_chain.h"
 
@@ -8,7 +8,7 @@ namespace {
 using scene::JointKind;
 
 /// A tree with flexible and rigid links on several joints, in free flight or hung up, under gravity and dead and
-/// follower loads; everything turned by `rotation` about the world origin.
+/// follower loads. The whole scene is rotated by `rotation` about the world's origin.
 SceneBuilder turned_scene(const Quaternion& rotation, bool hung_up) {
   SceneBuilder b = free_tree(JointKind::Universal);
   b.load("branch", {0.5, 2, 0.3}, {1, 2, 3}, {0.1, 0.2, 0.3}, "sin(t)");
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Rotated,
                            return std::get<0>(info.param) + (std::get<1>(info.param) ? "_hung_up" : "_free");
                          });
 
-/// Adds a quarter circle of radius 2 in the x-y plane of the link, from `from` to `to` [rad], as one beam.
+/// Adds a part of a circle of radius 2 in the x-y plane of the link, from `from` to `to` [rad], as one beam.
 void quarter_piece(SceneBuilder& b, const std::string& name, double from, double to, int elements, int order) {
   const auto point = [](double angle) { return Vector3(2 * std::sin(angle), 2 - 2 * std::cos(angle), 0); };
   scene::BeamDescription& beam = b.beam(name, {point(to) - point(from)}, soft_section(), elements, order);
@@ -72,7 +72,7 @@ void quarter_piece(SceneBuilder& b, const std::string& name, double from, double
   beam.stiffness_proportional_damping = 1e-3;
 }
 
-/// The quarter circle in one piece, or welded from two at a third of its length.
+/// A quarter circle in one piece, or welded from two pieces at a third of its length.
 SceneBuilder curved_beam(bool welded, JointKind root, int order) {
   SceneBuilder b;
   const double split = kPi / 6, end = kPi / 2;

@@ -1,4 +1,4 @@
-// Forces that jump within steps: they enter by their integrals, so that a jump costs no order.
+// Tests forces that jump within steps. They act by their integrals, so that a jump does not reduce the order.
 #include <cmath>
 #include <utility>
 
@@ -15,7 +15,7 @@
 namespace flexarm::test {
 namespace {
 
-const double kJump = std::sqrt(0.1);  // s; no step ends there
+const double kJump = std::sqrt(0.1);  // no step ends there
 const std::string kJumping = "t < sqrt(0.1) ? 3 : -3";
 
 std::vector<std::string> schemes_of_second_order() {
@@ -27,7 +27,7 @@ std::vector<std::string> schemes_of_second_order() {
 
 constexpr scene::DirectSection kSection{4e3, 1e3, 1e3, 6, 8, 12, 1, 0.01, 0.004, 0.006};
 
-/// Position of a mass that was at rest, after 1 s under a force that jumps.
+/// Exact position after 1 s of a mass that starts from rest, under a force that jumps.
 double position_after_a_jump(double mass) {
   const double a = 3 / mass, rest = 1 - kJump;
   return a * (0.5 * kJump * kJump + kJump * rest - 0.5 * rest * rest);
@@ -48,8 +48,8 @@ double position_at_1(const SceneBuilder& builder, const std::string& scheme, int
   return measure(simulation);
 }
 
-/// Order between steps around 1/48 s and those a fourth as long; the worst of many of each, since the error depends on
-/// where in its step a jump is.
+/// Observed order between steps around 1/48 s and steps a fourth as long. Takes the worst of many lengths each, since
+/// the error depends on where in its step the jump is.
 double order_of(const SceneBuilder& builder, const std::string& scheme, double exact, Measure measure = position) {
   double error[2] = {};
   for (int steps = 40; steps < 60; ++steps)
@@ -60,7 +60,7 @@ double order_of(const SceneBuilder& builder, const std::string& scheme, double e
   return 0.5 * observed_order(error[0], error[1]);
 }
 
-constexpr double kRotor = 1;  // kg, seen at the joint
+constexpr double kRotor = 1;  // kg, reflected to the joint
 
 SceneBuilder block_with_motor() {
   SceneBuilder b = block_on_rail();
@@ -70,8 +70,8 @@ SceneBuilder block_with_motor() {
 
 constexpr double kOmega = 5;  // rad/s
 
-/// A rod of 1 kg and 1 m, clamped at one end, which heat makes longer: one element, whose free end has a third of the
-/// mass. Its motion along its axis is linear, kOmega its frequency.
+/// A rod of 1 kg and 1 m, clamped at one end, which heat makes longer. It is one element, whose free end has a third of
+/// the mass. Its axial motion is linear with the frequency kOmega.
 SceneBuilder heated_rod(const std::string& heat) {
   constexpr scene::DirectSection kRod{kOmega * kOmega / 3, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   SceneBuilder b = cantilever_scene({{line({1, 0, 0})}, kRod}, 1, 1);
@@ -97,7 +97,7 @@ TEST_P(JumpBy, OfALoadKeepsSecondOrder) {
   EXPECT_GT(order_of(b, GetParam(), position_after_a_jump(kBlockMass)), 1.8);
 }
 
-// Cut at its limit at each instant, not in the mean: 3 instead of 30.
+// The limit cuts the effort at each instant instead of its mean: 3 instead of 30.
 TEST_P(JumpBy, BeyondALimitKeepsSecondOrder) {
   SceneBuilder b = block_on_rail();
   b.scene.joints[0].effort_limit = 3;
@@ -122,7 +122,7 @@ TEST_P(JumpBy, OfATorqueKeepsSecondOrderOfAPendulum) {
   EXPECT_GT(order_of(b, GetParam(), solve_ode(motion(-3), kJump, 1, at_jump)[0]), 1.8);
 }
 
-// What is asked of a motor is a force like others, and so is what a controller in mode `effort` is set to, or adds.
+// A motor's demand is a force like others. So is the set point and the feedforward of a controller in mode `effort`.
 TEST_P(JumpBy, OfWhatAMotorIsAskedForKeepsSecondOrder) {
   const auto expect_order = [](const SceneBuilder& b) {
     EXPECT_GT(order_of(b, GetParam(), position_after_a_jump(kBlockMass + kRotor)), 1.8);
@@ -138,10 +138,11 @@ TEST_P(JumpBy, OfWhatAMotorIsAskedForKeepsSecondOrder) {
   expect_order(by_feedforward);
 }
 
-// m v' = kp (w - v), where w jumps from w_0 to w_1.
+// Equation m v' = kp (w - v), where w jumps from w_0 to w_1.
 TEST_P(JumpBy, OfASetVelocityKeepsSecondOrder) {
   constexpr double kGain = 6, kFirst = 1.5, kThen = -1, kRate = kGain / kBlockMass;
-  const auto way = [](double begin, double set, double time) {  // of a velocity that begins there
+  // Distance of a motion with the initial velocity `begin`
+  const auto way = [](double begin, double set, double time) {
     return set * time + (begin - set) * (1 - std::exp(-kRate * time)) / kRate;
   };
   const double at_jump = kFirst * (1 - std::exp(-kRate * kJump));
@@ -152,9 +153,9 @@ TEST_P(JumpBy, OfASetVelocityKeepsSecondOrder) {
   EXPECT_GT(order_of(b, GetParam(), way(0, kFirst, kJump) + way(at_jump, kThen, 1 - kJump)), 1.8);
 }
 
-// m q'' = kp (w - q) + kd (w' - q'): a jump of w is an impulse kd of the jump, of which is known that it is in its
-// step. Half a step too early or too late, it leaves the position kd/m h/2 off at most; twice that is the bound. From w
-// - q = 1 and q' = kd/m on:
+// Equation m q'' = kp (w - q) + kd (w' - q'). A jump of w is an impulse kd of the jump, of which only the step is known
+// in which it acts. Half a step too early or too late gives a position error of at most kd/m h/2; the bound is twice
+// that. The exact motion starts from w - q = 1 and q' = kd/m.
 TEST_P(JumpBy, OfASetPositionDeliversItsImpulse) {
   constexpr double kStiffness = 60, kDamping = 8, kDecay = kDamping / (2 * kBlockMass);
   const double omega = std::sqrt(kStiffness / kBlockMass - kDecay * kDecay), time = 1 - kJump;
@@ -166,27 +167,28 @@ TEST_P(JumpBy, OfASetPositionDeliversItsImpulse) {
     EXPECT_NEAR(position_at_1(b, GetParam(), steps), exact, kDamping / kBlockMass / steps) << steps;
 }
 
-// m/3 u'' + k u = k p, where p jumps.
+// Equation m/3 u'' + k u = k p, where p jumps.
 TEST_P(JumpBy, OfAPrestrainKeepsSecondOrder) {
   const double exact = 1 + 0.02 * (1 - std::cos(kOmega)) - 0.04 * (1 - std::cos(kOmega * (1 - kJump)));
   EXPECT_GT(order_of(heated_rod("t < sqrt(0.1) ? 0.02 : -0.02"), GetParam(), exact, tip), 1.8);
 }
 
-// Of a mean force: h^2 theta (1 - theta)/2 times the jump of the acceleration, for a jump at theta of the step.
+// The error of a mean force is h^2 theta (1 - theta)/2 times the jump of the acceleration, for a jump at the fraction
+// theta of the step.
 TEST(Jump, LeavesTheErrorThatTheoryTells) {
   SceneBuilder b = block_on_rail();
   b.scene.efforts.push_back({"rail", TimeFunction::parse(kJumping), {}});
   for (const char* scheme : {"em", "em0", "edmc2", "m1", "std"})
     for (const int steps : {10, 13, 50}) {
       const double h = 1.0 / steps, theta = kJump / h - std::floor(kJump / h);
-      // From +3 to -3: the scheme has the later impulse of the jump too early.
+      // The force jumps from +3 to -3: the scheme applies the later impulse of the jump too early.
       const double error = 0.5 * h * h * theta * (1 - theta) * -6 / kBlockMass;
       EXPECT_NEAR(position_at_1(b, scheme, steps) - position_after_a_jump(kBlockMass), error, 1e-11)
           << scheme << " " << steps;
     }
 }
 
-// Where the force is constant between jumps its impulses are exact, and so are velocities at ends of steps.
+// If the force is constant between jumps, its impulses, and the velocities at the ends of steps, are exact.
 TEST(Jump, IsCountedExactlyInWorkAndMomentum) {
   SceneBuilder b = block_on_rail();
   b.scene.efforts.push_back({"rail", TimeFunction::parse("sign(sin(41.3*t)) + min(1, 3*t)"), {}});
@@ -197,7 +199,7 @@ TEST(Jump, IsCountedExactlyInWorkAndMomentum) {
   EXPECT_NEAR(simulation.energies().kinetic, 0.5 * std::pow(left + ramp, 2) / kBlockMass, 1e-11);
 }
 
-// Prestrains and loads of a flexible arm that jump: the account stays closed to Newton's tolerance.
+// Prestrains and loads of a flexible arm jump. The account closes to Newton's tolerance.
 TEST(Jump, OfPrestrainsAndLoadsClosesTheAccountOfBeams) {
   for (const char* scheme : {"em", "edmc2", "em_symmetric"}) {
     SceneBuilder b = cantilever_scene({{line({1, 0, 0})}, kSection}, 4, 2);
@@ -213,8 +215,8 @@ TEST(Jump, OfPrestrainsAndLoadsClosesTheAccountOfBeams) {
   }
 }
 
-// The trapezoidal rule conserves the energy of linear motions: what prestrains that jump do is known to round-off, also
-// in steps of several lengths, and where a step ends with a jump.
+// The trapezoidal rule conserves the energy of linear motions. The work of jumping prestrains is exact to round-off,
+// also in steps of several lengths, and if a step ends with a jump.
 TEST(Jump, OfAPrestrainClosesTheAccountOfNewmark) {
   for (const bool halves : {false, true}) {
     Simulation simulation(heated_rod("(t < 0.0527 ? 0 : (t < 0.3 ? 0.2 : -0.1)) + 0.1*max(0, sin(31*t-1))").scene,
@@ -233,10 +235,10 @@ TEST(Jump, OfAPrestrainClosesTheAccountOfNewmark) {
   }
 }
 
-// ---------------------------------------------------------------- what is put out
+// ---------------------------------------------------------------- published values
 
-// Newmark's family balances forces at the ends of steps, to which it adds what makes up for a jump within: that is not
-// put out.
+// The Newmark family balances forces at the ends of steps, and adds a correction for a jump within the step. Published
+// efforts must not contain this correction.
 TEST(Jump, IsNoPartOfAMotorsEffortBehindIt) {
   for (const char* scheme : {"newmark", "hht1", "hht2", "hht3"})
     for (const bool is_elastic : {false, true})
@@ -257,7 +259,7 @@ TEST(Jump, IsNoPartOfAMotorsEffortBehindIt) {
       }
 }
 
-// A motor without a rotor does the work that its effort does without a motor.
+// A motor without a rotor does the same work as the effort alone.
 TEST(Jump, DoesTheSameWorkByAMotor) {
   for (const char* scheme : {"em", "newmark"}) {
     SceneBuilder plain = block_on_rail(), driven = plain;
@@ -273,8 +275,8 @@ TEST(Jump, DoesTheSameWorkByAMotor) {
   }
 }
 
-// Behind a jump from one force to another, wherever in its step it is: the velocities that are put out are nearer to
-// those of the closed form than differences of positions, and never farther off than these are at worst.
+// After a jump of the force anywhere within a step, the error of published velocities is smaller than that of
+// differences of positions, and never larger than the worst of the latter.
 TEST_P(JumpBy, LeavesVelocitiesBetterThanDifferencesOfPositions) {
   constexpr int kBehind = 8;
   for (const auto& [first, then] : {std::pair<double, double>{0, 3}, {3, -3}, {3, 0}, {3, 6}, {-3, 9}}) {

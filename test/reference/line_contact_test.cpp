@@ -1,4 +1,4 @@
-// Beams whose smooth lines are touched: by balls, by each other, by themselves. Against closed forms.
+// Tests contacts with the smooth lines of beams: with balls, other beams, and the beam itself, against closed forms.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -45,7 +45,8 @@ Simulation simulation_of(const std::string& parts, const std::string& starts, do
   return touching::simulation_of(parts, starts, step, gravity);
 }
 
-/// Of places of two links' lines, by 1/100 of their lengths; of one link those that are farther apart along it [m].
+/// Smallest distance between points on two links' lines, in steps of 1/100 of their lengths. On one link, only points
+/// count that are farther apart along it than `apart` [m].
 double nearest_of(const Simulation& simulation, const std::pair<std::size_t, double>& first,
                   const std::pair<std::size_t, double>& second, double apart = 0) {
   constexpr int kPlaces = 100;
@@ -75,7 +76,7 @@ double account(const Simulation& simulation) {
 
 // ---------------------------------------------------------------- balls
 
-/// A ball smaller than the distance of the beam's stations, half way between two of them.
+/// A ball that is smaller than the distance of the beam's stations, half-way between two stations.
 Simulation ball_over_a_thin_beam(double restitution) {
   return simulation_of(
       rod("wire", {{1, 0, 0}, 0.003, 7e10, 2700, 4, 2}) + joint("wire", "fixed") + ball("ball", 0.002, 0.004) +
@@ -118,7 +119,7 @@ TEST(LineContact, NothingGoesThroughAThinBeam) {
   }
 }
 
-// Elements of 0.25 m have stations every 31 mm: a box of 10 mm would fall between them.
+// Elements of 0.25 m have stations every 31 mm. A box of 10 mm would fall between them.
 TEST(LineContact, SmallBoxLiesOnAThinBeamBetweenItsStations) {
   const double size = 0.01, mass = 0.01;
   const std::string box = fmt::format(
@@ -140,7 +141,7 @@ TEST(LineContact, SmallBoxLiesOnAThinBeamBetweenItsStations) {
   EXPECT_GT(height, 0.008 - 0.1 * 0.003) << "as far as it gives way at most";
 }
 
-// A carriage with a ball goes down on a cantilever, whose deflection at the ball is m g a^3 / (3 E I).
+// A carriage with a ball is lowered onto a cantilever. The deflection at the ball is m g a^3 / (3 E I).
 TEST(LineContact, BallRestsOnABeam) {
   const Rod beam{{1, 0, 0}, 0.01, 7e10, 1e-3, 5, 3};
   const double mass = 0.2, at = 0.63, radius = 0.02, stiffness = 1e4;
@@ -153,18 +154,18 @@ TEST(LineContact, BallRestsOnABeam) {
       fmt::format("<initial joint=\"of_ball\" position=\"{}\"/>", radius + beam.radius - 1e-6), 1e-3, {0, 0, -kG});
   ASSERT_TRUE(simulation.solve_static(1).converged);
   const double deflection = mass * kG * std::pow(at, 3) / (3 * bending_stiffness(beam));
-  const double penetration = mass * kG / stiffness;  // of what hardens by 2 (p / d)^2, which is 0.08 here
+  const double penetration = mass * kG / stiffness;  // the contact hardens by 2 (p / d)^2, which is 0.08 here
   const double height = simulation.link_pose(2).position.z();
   const double slope = mass * kG * at * at / (2 * bending_stiffness(beam));
-  // Shear, the ball's place beside the section below it, and the slope count for parts of (radius / length)^2 and
-  // slope^2.
+  // Shear, the position of the ball relative to the section below it, and the slope have relative effects of (radius /
+  // length)^2 and slope^2.
   EXPECT_NEAR(height, radius + beam.radius - deflection, deflection * (4e-3 + slope * slope) + penetration);
   EXPECT_NEAR(simulation.section(1, at).pose.position.z(), -deflection, 4e-3 * deflection);
   const double approach = height - simulation.section(1, at).pose.position.z();
   EXPECT_LT(approach, radius + beam.radius);
   EXPECT_GT(approach, radius + beam.radius - penetration - 1e-5);
-  // Small motions: the ball on the contact's stiffness behind that of the beam, which weighs nothing beside it. What
-  // is penetrated by s of its depth d stands for s d / (1 - s^2)^2 of the spring.
+  // Small vibrations: the ball on the contact's stiffness in series with that of the beam, whose mass is negligible. A
+  // penetration of s times the depth d counts as s d / (1 - s^2)^2 for the spring.
   const double depth = 0.1 * beam.radius;
   double low = 0, high = 0.9;
   for (int i = 0; i < 60; ++i) {
@@ -177,9 +178,9 @@ TEST(LineContact, BallRestsOnABeam) {
   EXPECT_NEAR(simulation.natural_modes(1)[0].frequency, std::sqrt(soft / mass) / (2 * kPi), 0.01);
 }
 
-// Timoshenko's problem, against modes of Euler and Bernoulli and a spring: test/elements/scripts/reference_impact.py
-// gives 0.09797, 0.09813, 0.09817 m/s with 8, 12, 16 modes, and -2.337e-4 m. Shear and the sections' inertia count for
-// parts of (radius times wave number)^2: 0.5 % in the 12th mode.
+// Timoshenko's problem, against modes of Euler and Bernoulli and a spring. test/elements/scripts/reference_impact.py
+// gives 0.09797, 0.09813, 0.09817 m/s with 8, 12, 16 modes, and -2.337e-4 m. Shear and rotary inertia have relative
+// effects of (radius times wave number)^2: 0.5 % in the 12th mode.
 TEST(LineContact, BallHitsABeamFromTheSide) {
   Simulation simulation = simulation_of(
       rod("beam", {{1, 0, 0}, 0.005, 2e11, 7800, 8, 3}) + joint("beam", "fixed") + ball("ball", 0.05, 0.02) +
@@ -197,7 +198,7 @@ TEST(LineContact, BallHitsABeamFromTheSide) {
 
 // ---------------------------------------------------------------- two beams
 
-/// Beams that springs hold together hit each other again and again, and nothing else acts on them.
+/// Springs pull two beams together, which hit each other again and again. There are no other forces.
 void expect_conserved_hits(const std::string& second, const std::string& springs, const std::string& second_start) {
   const Rod along{{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2};
   Simulation simulation =
@@ -223,7 +224,7 @@ void expect_conserved_hits(const std::string& second, const std::string& springs
     last = gap;
   }
   EXPECT_EQ(hits, 100);
-  // Newton's method leaves 1e-12 J or less of a hit: what a step does is exact to round-off, see test/contact.
+  // The error of Newton's method is at most 1e-12 J per hit. A step is exact to round-off; see test/contact.
   EXPECT_NEAR(simulation.energies().total(), energy, 1e-10);
   EXPECT_LE((simulation.momentum() - momentum).norm(), 1e-10);
   EXPECT_LE((simulation.angular_momentum() - angular).norm(), 1e-10);
@@ -252,8 +253,8 @@ TEST(LineContact, BeamsThatHitEachOtherAlongsideKeepEnergyAndMomenta) {
                         start("two", {0, 0, 0.0205}, {0.002, 0.001, -0.05}));
 }
 
-// Stiff rods hit each other across their middles, at two angles. They bend by the square of the ratio of the contact's
-// frequency to theirs, 314 to 14000 rad/s.
+// Stiff rods hit each other at their middles, at two angles. The effect of their bending is the squared ratio of the
+// contact's frequency to theirs, 314 to 14000 rad/s.
 TEST(LineContact, CrossedRodsGiveBackWhatTheyAreAskedFor) {
   for (const double e : {0.3, 0.5, 0.8, 1.0})
     for (const double angle : {90.0, 30.0}) {
@@ -274,7 +275,7 @@ TEST(LineContact, CrossedRodsGiveBackWhatTheyAreAskedFor) {
     }
 }
 
-/// Acceleration of a rod that lies across two others, which are held, down what is a slope along an axis [m/s^2].
+/// Acceleration along an inclined axis of a rod that lies across two held rods [m/s^2].
 double acceleration_of_a_rod(int axis, double slope, double friction) {
   const double down = kG * std::sin(slope);
   const Rod held{{0.6, 0, 0}, 0.01, 2e11, 7800, 6, 2}, moving{{0, 0.4, 0}, 0.01, 2e11, 7800, 4, 2};
@@ -293,15 +294,16 @@ double acceleration_of_a_rod(int axis, double slope, double friction) {
   return (third - 2 * second + first) / (0.075 * 0.075);
 }
 
-// Elastic ones: with restitution stations that come into contact in front are pressed harder than they let go behind,
-// which adds to the friction (docs/notes/contact.md 6). They leave waves of about a hundredth in what is felt.
+// The contacts are elastic. With restitution, stations that enter the contact at the front are pressed harder than
+// those that leave it at the back, which adds to the friction (docs/notes/contact.md 6). The entering stations excite
+// waves of about a hundredth of the force.
 TEST(LineContact, CrossedRodsSlideAndRoll) {
   EXPECT_NEAR(acceleration_of_a_rod(1, 0.5, 0.3), kG * (std::sin(0.5) - 0.3 * std::cos(0.5)), 0.015 * kG);
   EXPECT_NEAR(acceleration_of_a_rod(0, 0.3, 0.5), kG * std::sin(0.3) / 1.5, 0.015 * kG) << "it rolls";
 }
 
-// A rod lies with its tip on the tip of one that crosses it below: both have the same load there, and of two equal
-// cantilevers each has half of it.
+// The tip of a rod lies on the tip of another one that crosses it below. The load is at both tips, and two equal
+// cantilevers carry half of it each.
 TEST(LineContact, CrossedCantileversShareALoadInStatics) {
   const Rod along{{1, 0, 0}, 0.005, 2e11, 1e-3, 6, 2}, across{{0, 1, 0}, 0.005, 2e11, 1e-3, 6, 2};
   Simulation simulation = simulation_of(
@@ -310,7 +312,7 @@ TEST(LineContact, CrossedCantileversShareALoadInStatics) {
       "<load link=\"upper\" at=\"1 0 0\" force=\"0 0 -0.7\"/>", 1e-3);
   ASSERT_TRUE(simulation.solve_static(4).converged);
   const double bending = bending_stiffness(along), load = 0.7, at = 0.98;
-  // What the lower one carries, from equal deflections where they cross less what the contact gives way.
+  // Load of the lower cantilever, from equal deflections at the crossing less the contact's penetration.
   const double by_load = load * at * at * (3 - at) / (6 * bending), by_push = at * at * at / (3 * bending);
   const double lower = -simulation.section(2, at).pose.position.z(),
                upper = 0.01 - simulation.section(1, at).pose.position.z();
@@ -323,13 +325,15 @@ TEST(LineContact, CrossedCantileversShareALoadInStatics) {
   simulation.contacts(contacts);
   for (const ActingContact& contact : contacts) told += contact.force;
   EXPECT_NEAR(told.z(), push, 4e-3 * push);
-  // Across, no more than where places are off the crossing: by half of their distance, 1.3 mm, of that of both lines.
+  // The sideways component is at most the distance of the contact points from the crossing, half of their spacing or
+  // 1.3 mm, over the distance of both lines.
   EXPECT_LT(told.head<2>().norm(), 0.14 * push) << "there is no friction";
 }
 
 // ---------------------------------------------------------------- a beam and itself
 
-/// A rod that a moment at its tip rolls up to more than one turn: its tip comes to its root, in one plane.
+/// A moment at its tip rolls up a rod by more than one turn, so that the tip comes to the root in one plane. Returns
+/// the smallest distance.
 double nearest_of_itself(bool touches) {
   const Rod rope{{1, 0, 0}, 0.01, 1e7, 1000, 12, 2};
   Simulation simulation = simulation_of(

@@ -1,4 +1,4 @@
-// A million steps of a free mechanism: the drift of what em conserves.
+// Tests the drift of the quantities that em conserves over a million steps of a free mechanism.
 #include <cstdio>
 
 #include "reference/dynamics_joint_chain.h"
@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kFlightStep = 0.05;  // s
 
-/// Two links of one linear element each on a spherical joint, which keeps its rotation as a quaternion: a hinge's angle
-/// is resolved to epsilon times the angle, which grows with the turns of a free flight.
+/// Two links of one linear element each on a spherical joint. This joint keeps its rotation as a quaternion. The angle
+/// of a hinge would have a round-off of epsilon times the angle, which grows with the turns of a free flight.
 SceneBuilder two_links() {
   SceneBuilder b;
   b.beam("first", {{1, 0, 0}}, soft_section(), 1, 1);
@@ -23,12 +23,13 @@ SceneBuilder two_links() {
   return b;
 }
 
-/// Drifts after 1000 and every ten times as many steps, up to `steps`; `position_error`: of a step [m]. Growth is seen
-/// from `first` steps on.
+/// Compares the drifts after 1000, 10 000, ... steps, up to `steps`, with a bound. `position_error`: error of a step
+/// [m]. The growth is measured from `first` steps on.
 void expect_slow_drift(Simulation& simulation, int first, int steps, double position_error) {
   InvariantDrift drift(simulation);
-  // An error d of the position makes one of 2 d / h in v_1 = 2 Delta r / h - v_0, at both ends of the step, and twice
-  // its ratio to v in the energy: C N with the following C if the errors of all N steps pull in one direction.
+  // An error d of a position gives an error of 2 d / h in v_1 = 2 Delta r / h - v_0, at both ends of the step. The
+  // relative energy error is twice its ratio to v. If the errors of all N steps have the same direction, the drift is C
+  // N with the following C.
   const double speed = std::sqrt(2 * simulation.energies().kinetic / total_mass(simulation));
   const double per_step = 2 * (2 * 2 * position_error / kFlightStep) / speed;
   std::vector<double> rates;
@@ -48,12 +49,12 @@ void expect_slow_drift(Simulation& simulation, int first, int steps, double posi
   }
   const double power = 1 + std::log10(rates.back() / rates.front()) / static_cast<double>(rates.size() - 1);
   std::printf("grows as N^%.2f\n", power);
-  // Not faster than linearly, within a factor of two.
+  // The drift grows at most linearly, within a factor of two.
   for (std::size_t k = 0; k + 1 < rates.size(); ++k) EXPECT_LT(rates.back(), 2 * rates[k]);
 }
 
-// Full Newton steps leave the round-off of positions, of about the mechanism's size, without a preferred direction:
-// measured is sqrt(N), the bound is for N.
+// Full Newton leaves round-off of positions, of about the mechanism's size, without a preferred direction. The measured
+// drift grows as sqrt(N); the bound is for N.
 TEST(LongRun, RoundOffOfAMillionSteps) {
   SimulationOptions set = options("em", kFlightStep, 1e-10);
   set.reuse_factorisation = false;
@@ -61,9 +62,9 @@ TEST(LongRun, RoundOffOfAMillionSteps) {
   expect_slow_drift(simulation, 1000, 1000000, kEpsilon * model_of(simulation).length_scale);
 }
 
-// Kept factors let Newton's method stop where the next update would be below 1e-15 of the mechanism's size. What it
-// leaves out points in the direction in which it converges: measured is N, from where it is more than round-off, which
-// a thousand steps still are.
+// With kept factors, Newton's method ends when the next update would be below 1e-15 of the mechanism's size. The
+// remaining error has the direction of convergence. The measured drift grows as N once it exceeds round-off, after a
+// few thousand steps.
 TEST(LongRun, RemainderOfNewtonsMethod) {
   Simulation simulation(two_links().scene, options("em", kFlightStep, 1e-10));
   expect_slow_drift(simulation, 10000, 100000, (kEpsilon + 1e-15) * model_of(simulation).length_scale);

@@ -1,5 +1,5 @@
-// Loops with a flexible link in them, closed by master and slave: invariants, closed forms, and the same mechanism cut
-// at different places.
+// Tests loops with a flexible link, closed by master and slave: invariants, closed forms, and equal motion of a
+// mechanism that is cut at different joints.
 #include <cmath>
 
 #include "math/pi.h"
@@ -17,7 +17,7 @@ scene::DirectSection soft() {
 
 enum class Cut { Ground, GroundFromRocker, Coupler };
 
-/// Crank, coupler with a body beside it, and rocker, flexible, in the x-z plane; driven by its weight.
+/// A flexible crank, a coupler with a body beside it, and a flexible rocker, in the x-z plane, driven by their weight.
 SceneBuilder four_bar(Cut cut) {
   SceneBuilder b;
   b.scene.gravity = {1, 0, -9.81};
@@ -35,7 +35,7 @@ SceneBuilder four_bar(Cut cut) {
   } else {
     b.joint("hip", JointKind::Continuous, "coupler", "rocker", {1, 0, 0.2}, kAcross);
     close_loop(b, "foot", JointKind::Continuous, "world", "rocker", rocker, kAcross);
-    if (cut == Cut::GroundFromRocker) {  // the same joint, with the roles of its links exchanged
+    if (cut == Cut::GroundFromRocker) {  // the same joint with parent and child exchanged
       scene::JointDescription& foot = b.scene.loop_joints.back();
       std::swap(foot.parent, foot.child);
       std::swap(foot.origin, foot.child_origin);
@@ -55,7 +55,8 @@ TEST(FlexibleLoop, FourBarKeepsItsEnergyOverLargeSteps) {
     }
 }
 
-// Where the loop is cut does not matter, but for the sign of a coordinate whose links change roles.
+// The joint at which the loop is cut does not change the motion, except for the sign of a coordinate whose links are
+// exchanged.
 TEST(FlexibleLoop, FourBarMovesTheSameWhereverItIsCut) {
   for (const char* scheme : {"em", "m1", "newmark", "hht3"}) {
     std::vector<Simulation> simulations;
@@ -65,7 +66,7 @@ TEST(FlexibleLoop, FourBarMovesTheSameWhereverItIsCut) {
     for (int n = 0; n < 60; ++n)
       for (Simulation& simulation : simulations) ASSERT_TRUE(simulation.step().converged) << scheme;
     EXPECT_GT(std::abs(value(simulations[0], "foot")), 0.05);
-    // The maps of a step are exact in conserving schemes, but their averages are not the same functions.
+    // In conserving schemes the maps of a step are exact. The averages in them differ between cuts.
     for (const char* name : {"ground", "knee", "hip", "foot"}) {
       const double expected = value(simulations[0], name);
       const double sign = std::string(name) == "foot" ? -1 : 1;
@@ -105,14 +106,15 @@ TEST(FlexibleLoop, EffortFrictionAndStopsActOnTheClosingJoint) {
   });
   EXPECT_LT(drift.energy(), 1e-11);
   EXPECT_GT(most, 0.2);
-  // A stop is made so stiff that half a period of contact with all that it holds lasts ten steps.
+  // The stop's stiffness is such that half a period of contact lasts ten steps, with all links that it stops.
   EXPECT_LT(most, 0.2 + speed * 10 * 0.01 / kPi) << "the stop must hold";
   EXPECT_GT(simulation.energies().dissipated, 0.1);
 }
 
 // ---------------------------------------------------------------- free flight
 
-/// A floating body with two beams; the tip of one is held by a joint to a body that turns on the tip of the other.
+/// A floating body with two beams. A joint connects the tip of one beam to a body that rotates on the tip of the other
+/// beam.
 SceneBuilder free_loop(JointKind kind, bool reversed) {
   SceneBuilder b;
   b.body("trunk", 1, {0.1, 0, 0.05}, Vector3(0.05, 0.06, 0.07).asDiagonal());
@@ -160,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FreeLoop,
                                                               JointKind::Planar, JointKind::Screw),
                                             ::testing::Bool()));
 
-/// One flying beam whose end is welded to its own beginning, if `gap` [m] is 0.
+/// A flying beam whose end is welded to its beginning, if `gap` [m] is 0.
 SceneBuilder closed_ring(double gap) {
   SceneBuilder b;
   b.beam("ring", {{0.5, 0, 0}, {0.5, 0.5, 0.2}, {0, 0.5, 0.2}, {0, gap, 0}}, soft(), 8, 2);
@@ -201,7 +203,7 @@ TEST(FlexibleLoop, RingThatIsNotClosedIsRefused) {
 
 enum class HeldEnds { Clamped, ClampedBeside, Hinged };
 
-/// A beam of unit length along x that both its ends hold.
+/// A beam of unit length along x, held at both ends.
 SceneBuilder held_beam(HeldEnds ends, int elements) {
   SceneBuilder b;
   b.beam("beam", {{1, 0, 0}}, section(1e6, 4e5, 50, 100, 0.5, 1e-4, 5e-5), elements, 2);
@@ -220,7 +222,7 @@ SceneBuilder held_beam(HeldEnds ends, int elements) {
   return b;
 }
 
-// Bending and shear by a uniform load so small that the beam's stretching counts for less than 1e-7.
+// Bending and shear by a uniform load. It is so small that the beam's stretching has an effect below 1e-7.
 TEST(FlexibleLoop, SagOfABeamHeldAtBothEnds) {
   const double load = 1e-3, ei = 100, ga = 4e5;
   for (const HeldEnds ends : {HeldEnds::Clamped, HeldEnds::ClampedBeside, HeldEnds::Hinged}) {
@@ -234,7 +236,7 @@ TEST(FlexibleLoop, SagOfABeamHeldAtBothEnds) {
       ASSERT_TRUE(simulation.solve_static(1).converged);
       error[refinement] = std::abs(simulation.probe(0).pose.position.z() / expected - 1);
     }
-    // Displacements of quadratic elements at their nodes converge at fourth order.
+    // At the nodes, displacements of quadratic elements converge with fourth order.
     EXPECT_LT(error[1], 0.1 * error[0] + 1e-7);
     EXPECT_LT(error[2], 0.1 * error[1] + 1e-7);
     EXPECT_LT(error[2], 1e-3);
@@ -247,7 +249,7 @@ TEST(FlexibleLoop, FrequencyOfABeamHeldAtBothEnds) {
     const Simulation simulation(held_beam(ends, 16).scene);
     const double number = ends == HeldEnds::Hinged ? kPi : 4.730040744862704;
     const double expected = number * number * std::sqrt(100 / 0.5) / (2 * kPi);
-    // Shear and rotary inertia lower it by number^2 (EI / GA + J / m) times a factor of order one.
+    // Shear and rotary inertia lower the frequency by number^2 (EI / GA + J / m) times a factor of order one.
     EXPECT_NEAR(simulation.natural_modes(1)[0].frequency / expected, 1, 2 * number * number * (100 / 4e5 + 1e-4));
   }
 }

@@ -1,4 +1,4 @@
-// Loops of rigid links, closed by multipliers: closed-form motions, invariants, constraints.
+// Tests loops of rigid links, closed by multipliers: closed-form motions, invariants, constraints.
 #include <cmath>
 
 #include "flexarm/model/model_error.h"
@@ -15,21 +15,21 @@ namespace {
 using Eigen::VectorXd;
 using scene::JointKind;
 
-/// A slender bar along z from its link origin, with its centre beside its middle.
+/// A slender bar along z from its link origin. Its centre of mass is beside its middle.
 void bar(SceneBuilder& b, const std::string& name, double mass, const Vector3& to, const Vector3& beside) {
   b.body(name, mass, 0.5 * to + beside, Vector3(0.1, 0.05, 0.08).asDiagonal());
 }
 
-/// Two equal cranks on a line that carry a coupler parallel to that line: the coupler does not turn, so that
-///   (J1 + J2 + m1 c1^2 + m2 c2^2 + m3 a^2) q'' = -g (m1 c1 + m2 c2 + m3 a) sin q
-/// for the angle q of the cranks from the downward vertical, wherever the coupler has its centre of mass.
+/// Two equal cranks on a line carry a coupler parallel to this line. The coupler does not rotate, so the angle q of the
+/// cranks from the downward vertical obeys, for any centre of mass of the coupler,
+///   (J1 + J2 + m1 c1^2 + m2 c2^2 + m3 a^2) q'' = -g (m1 c1 + m2 c2 + m3 a) sin q.
 SceneBuilder parallelogram(double start, JointKind closing = JointKind::Continuous) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
   bar(b, "left", 1.2, {0, 0, -0.8}, {0, 0.1, 0});
   bar(b, "right", 0.7, {0, 0, -0.8}, {0, -0.2, 0});
   bar(b, "coupler", 2, {1, 0, 0}, {0.1, 0.3, -0.2});
-  // The position at the start is in the frames of the joints, so that all their coordinates are 0 there.
+  // The initial position is put into the joints' frames, so that all joint coordinates are 0 there.
   const Quaternion turned(Eigen::AngleAxisd(-start, kAcross));
   b.joint("left", JointKind::Continuous, "world", "left", {0, 0, 0}, kAcross).origin.orientation = turned;
   b.joint("right", JointKind::Continuous, "world", "right", {1, 0, 0}, kAcross).origin.orientation = turned;
@@ -60,7 +60,7 @@ TEST(RigidLoop, ParallelogramIsAPendulum) {
     double error[3];
     for (int refinement = 0; refinement < 3; ++refinement) {
       SceneBuilder b = parallelogram(start);
-      initial_joint(b, "left", 0, -0.5);  // about +y, while q grows about -y
+      initial_joint(b, "left", 0, -0.5);  // about +y, whereas q grows about -y
       Simulation simulation(b.scene, options(scheme, 0.04 / (1 << refinement), 1e-11));
       run(simulation, 40 << refinement);
       error[refinement] = std::abs(start - angle(simulation, "left") - exact);
@@ -72,7 +72,7 @@ TEST(RigidLoop, ParallelogramIsAPendulum) {
   }
 }
 
-/// Largest violation of what the closing joint holds: distance of its places, and angle between its axes.
+/// Largest violation of the closing joint's constraints: distance of its points, and angle between its axes.
 double opening(const Simulation& s) {
   double largest = 0;
   std::vector<NodePose> poses;
@@ -126,7 +126,7 @@ TEST(RigidLoop, WorkOfADriveAccountsForTheEnergy) {
   EXPECT_GT(std::abs(simulation.energies().work), 0.1);
 }
 
-// Small swings about the lowest position: what the multipliers carry is part of the stiffness.
+// Small swings about the lowest position. The forces of the multipliers are part of the stiffness.
 TEST(RigidLoop, NaturalFrequencyOfTheParallelogram) {
   const Simulation simulation(parallelogram(0).scene);
   const std::vector<Mode> modes = simulation.natural_modes(5);
@@ -142,7 +142,8 @@ TEST(RigidLoop, EquilibriumOfTheParallelogram) {
   EXPECT_NEAR(angle(simulation, "right"), 0.3, 1e-9);
 }
 
-// At rest on one line with its cranks the coupler may turn either way: the loop does not say which constraints hold.
+// If coupler and cranks are at rest on one line, the coupler may turn either way. The loop does not determine which
+// constraints hold.
 TEST(RigidLoop, SingularAtTheStart) {
   EXPECT_THROW(Simulation(parallelogram(0.5 * kPi).scene, options("em", 0.01)), ModelError);
 }
@@ -176,7 +177,7 @@ TEST_P(FreeRing, ConservesEnergyAndMomenta) {
       drift.observe();
       worst = std::max(worst, opening(simulation));
     });
-    if (std::string(scheme) != "m1") {  // keeps momenta only
+    if (std::string(scheme) != "m1") {  // conserves momenta only
       EXPECT_LT(drift.energy(), 1e-11) << scheme;
     }
     EXPECT_LT(drift.momentum(), 1e-11) << scheme;

@@ -1,5 +1,6 @@
-// Loops of rigid links where schemes, steps and joints' velocities change while they move: velocities that close them
-// again, and the error of runs to an accuracy beside the equation of the one freedom that a loop has.
+// Tests loops of rigid links when scheme, step or joint velocities change during the motion: velocities must be
+// corrected such that the loop stays closed. Also compares runs to an accuracy with the equation of a loop's single
+// degree of freedom.
 #include <cmath>
 
 #include "flexarm/accuracy/accurate_run.h"
@@ -23,7 +24,7 @@ double torque(double t) {
   return 4 * std::sin(3 * t) + 1;
 }
 
-/// slider_crank(), driven by torque().
+/// The slider-crank of slider_crank(), driven by torque().
 SceneBuilder driven_crank(const std::string& scheme = "auto") {
   SceneBuilder b = slider_crank(scheme);
   b.scene.efforts.push_back({"a", TimeFunction::parse("4*sin(3*t)+1"), {}});
@@ -34,7 +35,7 @@ VectorXd driven_rates(double t, const VectorXd& y) {
   return crank_rates(y, torque(t));
 }
 
-/// The motion of the probes of driven_crank().
+/// Exact motion of the probes of driven_crank().
 JudgedMotion exact_motion(double until, int intervals) {
   JudgedMotion motion(2);
   VectorXd y = Eigen::Vector2d(kAngle, 0);
@@ -47,7 +48,7 @@ JudgedMotion exact_motion(double until, int intervals) {
   return motion;
 }
 
-/// Two blocks on rails of their own along x, which a loop joint holds together.
+/// Two blocks on separate rails along x, connected by a loop joint.
 SceneBuilder coupled_blocks(double first, double second) {
   SceneBuilder b;
   b.body("first", first, {0, 0, 0}, 0.01 * Matrix3::Identity());
@@ -58,7 +59,7 @@ SceneBuilder coupled_blocks(double first, double second) {
   return b;
 }
 
-/// Spatial: a crank about z, a rocker about x, and between them a rod on two balls (RSSR).
+/// A spatial loop (RSSR): a crank about z, a rocker about x, and a rod between them on two ball joints.
 SceneBuilder spatial_loop() {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -91,8 +92,8 @@ LoopOpening opening_of_velocities(const Simulation& s) {
 
 // ---------------------------------------------------------------- velocities
 
-// The least change of kinetic energy is that of a collision without rebound: momentum stays, the loss is
-// m1 m2 (v1 - v2)^2 / (2 (m1 + m2)).
+// The correction with the least change of kinetic energy is that of an inelastic collision: momentum is conserved, and
+// the loss is m1 m2 (v1 - v2)^2 / (2 (m1 + m2)).
 TEST(LoopVelocities, AreThoseAfterAnInelasticBlow) {
   const double m1 = 2, m2 = 0.5, v1 = 3, v2 = -1;
   const Simulation simulation(coupled_blocks(m1, m2).scene);
@@ -124,8 +125,8 @@ TEST(LoopVelocities, ThatAreClosedStayToTheBit) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(closed.nodes[i].velocity, state.nodes[i].velocity);
 }
 
-// A flat parallelogram: its constraint along the bars says nothing of velocities there, and nearly nothing close by, so
-// that no velocity can be asked to close what opens along them.
+// A flat parallelogram. There, its constraint along the bars does not restrict velocities; near it, the constraint does
+// so hardly. So no reasonable velocity correction can close an opening along the bars.
 TEST(LoopVelocities, StayWithinReasonAtDeadPoints) {
   SceneBuilder b;
   b.body("crank", 1, {0.1, 0, 0.1}, 1e-2 * Matrix3::Identity());
@@ -148,7 +149,7 @@ TEST(LoopVelocities, StayWithinReasonAtDeadPoints) {
   }
 }
 
-/// How far velocities open the loop after a number of steps to the same time, halved from one to the next.
+/// Relative rate at which velocities open the loop, after `steps` steps to the same time.
 double opening_after(const std::string& scheme, int steps) {
   SceneBuilder b = driven_crank();
   Simulation simulation(b.scene, options(scheme, 0.5 / steps, 1e-12));
@@ -156,9 +157,9 @@ double opening_after(const std::string& scheme, int steps) {
   return opening_of_velocities(simulation).rate / opening_of_velocities(simulation).fastest;
 }
 
-// joints.md 3.2: the rule of velocities, not the constraint, leaves them open, by the second power of the step, that of
-// em4 too, and by the first where velocities are differences backwards. Odd numbers of steps: even ones close them
-// again.
+// joints.md 3.2: the rule for velocities does not satisfy the constraint. The loop opens by the second power of the
+// step (also with em4), or by the first power with backward differences. Odd numbers of steps are used, since even
+// numbers close the loop again.
 TEST(LoopVelocities, OpenByTheOrderOfTheirRule) {
   for (const char* scheme : {"em", "m1", "edmc2", "newmark"}) {
     const double coarse = opening_after(scheme, 75), fine = opening_after(scheme, 225);
@@ -167,7 +168,7 @@ TEST(LoopVelocities, OpenByTheOrderOfTheirRule) {
   EXPECT_NEAR(std::log(opening_after("m2", 75) / opening_after("m2", 225)) / std::log(3.0), 1, 0.15);
 }
 
-/// What must hold where one scheme takes over from another one.
+/// Checks that the motion continues smoothly when a scheme or a step takes over from another one.
 void expect_goes_on(const SceneBuilder& b, const std::string& before, const std::string& after, double factor) {
   SCOPED_TRACE(before + " to " + after + " by " + std::to_string(factor));
   Simulation from(b.scene, options(before, 0.01, 1e-10));
@@ -182,7 +183,7 @@ void expect_goes_on(const SceneBuilder& b, const std::string& before, const std:
   }
   const double energy = from.energies().kinetic;
   EXPECT_NEAR(energy_account(to), energy_account(from), 1e-12 * (1 + energy));
-  for (std::size_t i = 0; i < state_of(to).nodes.size(); ++i)  // as an error of the scheme
+  for (std::size_t i = 0; i < state_of(to).nodes.size(); ++i)  // velocities differ by an error of the scheme
     EXPECT_LT((state_of(to).nodes[i].velocity - state_of(from).nodes[i].velocity).norm(),
               (before == "m2" || before == "edmc1" ? 0.1 : 0.02) * fastest(from));
   const Vector3 linear = to.momentum(), angular = to.angular_momentum();
@@ -208,7 +209,7 @@ TEST(LoopVelocities, OtherStepsTakeOver) {
     for (const double factor : {1.0, 0.37, 0.01, 4.0}) expect_goes_on(driven_crank(), scheme, scheme, factor);
 }
 
-/// How far the crank is off at 1 s, in steps of these lengths one after the other, each for a twentieth of the time.
+/// Error of the crank's angle at 1 s. The step lengths alternate; each holds for a twentieth of the time.
 double error_in_steps(const std::vector<double>& lengths) {
   constexpr double kPart = 0.05;
   SceneBuilder b = driven_crank();
@@ -219,15 +220,15 @@ double error_in_steps(const std::vector<double>& lengths) {
     simulation.set_step_size(step);
     run(simulation, static_cast<int>(std::lround(kPart / step)), [&] { drift.observe(); });
   }
-  // Round-off of positions over the step is one of velocities, with signs of its own; all speeds are about 1 here.
+  // Round-off of positions over the step is a velocity error with random sign. All speeds are about 1 here.
   const double shortest = *std::min_element(lengths.begin(), lengths.end());
   EXPECT_LT(drift.energy(), 1e-10 + 4 * kEpsilon / shortest * std::sqrt(1 / shortest));
   EXPECT_NEAR(simulation.time(), 1, 1e-10);
   return std::abs(simulation.position(0) - solve_ode(driven_rates, 0, 1, Eigen::Vector2d(kAngle, 0))[0]);
 }
 
-// Velocities that the longer steps, an odd number of them, leave open do no harm to the shorter ones; the scheme keeps
-// its energy. Errors are those of the longer steps at most.
+// Velocities that do not satisfy the constraint after an odd number of longer steps do not affect the shorter steps.
+// The scheme keeps its energy, and the error is at most that of the longer steps.
 TEST(LoopVelocities, LeftOpenDoNoHarmToOtherSteps) {
   const double longest = error_in_steps({0.01});
   EXPECT_GT(longest, 1e-5);
@@ -240,13 +241,13 @@ TEST(LoopVelocities, JointsOfAMovingLoopCanBeSet) {
   ASSERT_GT(opening_of_velocities(simulation).rate, 2e-6 * opening_of_velocities(simulation).fastest)
       << "more than those may who set them";
   const double books = energy_account(simulation);
-  // All as it is: but for what opens the loop nothing changes.
+  // If positions are set to their present values, only the velocities change: the correction that closes the loop.
   std::vector<double> places;
   for (std::size_t i = 0; i < 3; ++i) places.push_back(simulation.position(i));
   ASSERT_NO_THROW(simulation.set_joint_state({{0, places[0], {}}, {1, places[1], {}}, {2, places[2], {}}}));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(simulation.position(i), places[i], 1e-15);
   EXPECT_LT(opening_of_velocities(simulation).rate, 1e-12 * opening_of_velocities(simulation).fastest);
-  // Velocities that close it, and one that does not.
+  // First, velocities that satisfy the constraint; then one that does not.
   const SliderCrank s(simulation.position(0));
   const double rate = 2.5;
   ASSERT_NO_THROW(
@@ -288,7 +289,7 @@ void expect_accuracy(const std::string& scheme, double accuracy) {
   EXPECT_EQ(run.end, AccurateRun::End::Met);
   EXPECT_LE(motion_error(run.motion, exact, run.scale), accuracy);
   EXPECT_NEAR(simulation.time(), kUntil, 1e-12);
-  // The simulation goes on from there, with its own scheme.
+  // The simulation continues from there with its own scheme.
   const Eigen::Vector2d end = exact.points[1].back().head<2>();
   EXPECT_LE((simulation.probe_pose(1).position.head<2>() - end).norm(), 4 * accuracy * run.scale);
   test::run(simulation, 5);
@@ -298,7 +299,7 @@ TEST(LoopAccuracy, OfASliderCrankIsWhatIsAskedFor) {
   for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) expect_accuracy("auto", accuracy);
 }
 
-// Without Newmark's rule with gamma = 1/2, whose multipliers grow without end (theory/joints.md, "Closed loops").
+// Left out is Newmark's rule with gamma = 1/2, whose multipliers grow without end (theory/joints.md, "Closed loops").
 TEST(LoopAccuracy, IsMetByOtherSchemes) {
   for (const char* scheme : {"em", "em0", "em_symmetric", "em4", "edmc2", "m1", "std", "hht1", "hht3"})
     expect_accuracy(scheme, 1e-3);

@@ -1,4 +1,4 @@
-// Meshes that touch: a body with a mesh moves as the same body with a box.
+// Tests contact of meshes: a body with the mesh of a box moves as the same body with a box.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace {
 
 const Vector3 kHalf(0.05, 0.1, 0.03);
 
-/// A file of a box, in millimetres.
+/// Writes a file with the mesh of a box in millimetres, and returns its path.
 std::string box_file() {
   const std::string path = std::filesystem::path(::testing::TempDir()) / "touching_box.obj";
   std::ofstream file(path);
@@ -37,7 +37,7 @@ std::string box_shape() {
   return fmt::format("<box size=\"{} {} {}\"/>", 2 * kHalf.x(), 2 * kHalf.y(), 2 * kHalf.z());
 }
 
-/// Two bodies of that shape that fall on each other, and on a floor.
+/// Two bodies of the given shape, which fall on each other and on a floor.
 Simulation falling(const std::string& shape) {
   std::string text = R"(<robot name="meshes"><link name="world"/><ground name="floor"/>
     <contact first="*" second="*" restitution="0.5" friction="0.4"/>)";
@@ -55,7 +55,7 @@ Simulation falling(const std::string& shape) {
   return Simulation(result.scene.value());
 }
 
-// Points and faces come in another order, so that sums differ by round-off, which grows from hit to hit.
+// Points and faces have a different order, so that sums differ by round-off, which grows from hit to hit.
 TEST(TouchingMeshes, OfABoxAreTheBox) {
   Simulation box = falling(box_shape()), mesh = falling(mesh_shape());
   for (int k = 0; k < 400; ++k) {
@@ -69,7 +69,7 @@ TEST(TouchingMeshes, OfABoxAreTheBox) {
   EXPECT_GT(box.energies().dissipated, 0.1) << "it did hit";
 }
 
-// Of the law g (sin - mu cos), with the smaller mu of both surfaces, as Gazebo has it.
+// Sliding follows g (sin - mu cos), with the smaller mu of both surfaces, as in Gazebo.
 TEST(TouchingMeshes, SlideByTheFrictionThatGazeboKnows) {
   const double slope = 0.5;
   const scene::ReadResult result = scene::read_scene_text(

@@ -1,4 +1,4 @@
-/// elements="auto": the number of elements that the first four bending frequencies need.
+/// Tests elements="auto": the number of elements is sufficient for the first four bending frequencies.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-/// Bending frequencies of slender beams (case M1), with hub inertia and tip mass, against frequency equations.
+/// Tests bending frequencies of slender beams (case M1), with hub inertia and tip mass, against frequency equations.
 
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Slenderness: shear and rotary inertia lower the frequency by some (beta L)^2 (r2 + s2) / 2.
+/// Slenderness: shear and rotary inertia lower the frequency by about (beta L)^2 (r2 + s2) / 2.
 constexpr double kSlenderness = 1e-6;
 
 PlaneBeam slender() {
@@ -29,8 +29,8 @@ std::ostream& operator<<(std::ostream& out, const Ends& ends) {
 
 class SlenderBeam : public testing::TestWithParam<Ends> {};
 
-// Against Timoshenko's frequency equation of the same beam to the round-off of the eigenvalue, and against Bernoulli's
-// within what shear and rotary inertia explain.
+// Compares with Timoshenko's frequency equation of the same beam, to the round-off of the eigenvalue. Compares with
+// Bernoulli's equation within the effects of shear and rotary inertia.
 TEST_P(SlenderBeam, FrequenciesAgreeWithTheFrequencyEquation) {
   const auto [name, root, tip] = GetParam();
   const std::vector<double> omega = computed_frequencies(slender(), root, tip, 16, 4, 4);
@@ -89,7 +89,7 @@ TEST(RigidMotions, AreCountedAndExactlyZero) {
   }
 }
 
-// Two beams on a spherical joint, floating: six motions as a whole and three of one against the other.
+// Two floating beams on a spherical joint have six rigid motions as a whole, and three relative to each other.
 TEST(RigidMotions, OfAMechanism) {
   SceneBuilder builder = plane_scene(slender(), kFree, kFree, 4, 2);
   const scene::Section same = builder.scene.links.back().beam->section;
@@ -98,7 +98,8 @@ TEST(RigidMotions, OfAMechanism) {
   EXPECT_EQ(rigid_motions(builder, 16), 9);
 }
 
-// Nothing is aligned with an axis, and the section couples everything: the energy of a rigid motion is round-off only.
+// The beam is aligned with no axis, and its section couples all strains. The energy of a rigid motion is only
+// round-off.
 TEST(RigidMotions, OfACurvedBeamInAGeneralPosition) {
   for (int order = 1; order <= 4; ++order) {
     for (const int elements : {3, 12, 40}) {

@@ -1,4 +1,4 @@
-/// The frequency determinant of these tests against published roots and closed forms.
+/// Tests the frequency determinant that serves as a reference here, against published roots and closed forms.
 
 #include <cmath>
 
@@ -24,22 +24,24 @@ TEST(ExactSpectrum, RootsOfBernoullisBeam) {
   };
   for (const Case& c : cases) {
     const std::vector<double> omega = exact_frequencies({}, c.root, c.tip, 5);
-    for (int k = 0; k < 5; ++k) EXPECT_NEAR(std::sqrt(omega[k]), c.beta[k], 1e-11);  // digits of the table
+    for (int k = 0; k < 5; ++k) EXPECT_NEAR(std::sqrt(omega[k]), c.beta[k], 1e-11);  // number of digits in the table
   }
 }
 
 TEST(ExactSpectrum, HubAndTipMassInTheirLimits) {
-  // A heavy hub holds a pinned root, a heavy tip mass a free end. A light beam with a tip mass is a spring: 3 EI / L^3.
+  // A heavy hub acts as a clamp at a pinned root, a heavy tip mass as a pin at a free end. A light beam with a tip mass
+  // is a spring, 3 EI / L^3.
   const EndCondition heavy_hub{false, true, 0, 1e12}, heavy_tip{true, true, 1e12, 0};
   EXPECT_NEAR(exact_frequencies({}, heavy_hub, kFree, 1)[0], exact_frequencies({}, kClamped, kFree, 1)[0], 1e-10);
   EXPECT_NEAR(exact_frequencies({}, kClamped, heavy_tip, 1)[0], exact_frequencies({}, kClamped, kPinned, 1)[0], 1e-10);
   PlaneBeam light;
-  light.mass = 1e-4;  // Rayleigh's 33/140 of it moves with the tip, up to the square of the mass
+  light.mass = 1e-4;  // Rayleigh's 33/140 of it moves with the tip, with an error of the square of the mass
   EXPECT_NEAR(exact_frequencies(light, kClamped, {true, true, 1, 0}, 1)[0], std::sqrt(3 / (1 + 33e-4 / 140)), 1e-8);
 }
 
 TEST(ExactSpectrum, PinnedTimoshenkoBeamUnderTension) {
-  // Sine modes: with k = n pi / L the two fields decouple into a quadratic for omega^2; without shear it is linear.
+  // The modes are sines. With k = n pi / L, the two fields decouple into a quadratic equation for omega^2; without
+  // shear it is linear.
   PlaneBeam beam;
   beam.axial_force = 7;
   for (int n = 1; n <= 4; ++n) {

@@ -1,5 +1,5 @@
-/// Beck's column: clamped, under a compressive force P that follows the tip, with internal damping; against its
-/// transcendental equation.
+/// Tests Beck's column: clamped, under a compressive force P that follows the tip, with internal damping. It is
+/// compared with its transcendental equation.
 
 #include <cmath>
 #include <complex>
@@ -14,14 +14,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// lambda near `guess` for which EI (1 + eta lambda) w,xxxx + P w,xx + m lambda^2 w = 0 has a solution with
-/// w = w,x = 0 at the root and w,xx = w,xxx = 0 at the tip; EI = m = L = 1.
+/// The eigenvalue lambda near `guess` of EI (1 + eta lambda) w,xxxx + P w,xx + m lambda^2 w = 0, with w = w,x = 0 at
+/// the root and w,xx = w,xxx = 0 at the tip; EI = m = L = 1.
 Complex exact_eigenvalue(double load, double eta, Complex guess) {
   const auto determinant = [&](Complex lambda) {
     const Complex stiffness = 1.0 + eta * lambda, half = load / (2.0 * stiffness);
     const Complex root = std::sqrt(half * half - lambda * lambda / stiffness);
     const Complex a = std::sqrt(root - half), b = std::sqrt(root + half);
-    // w = A (cosh ax - cos bx) + B (sinh(ax)/a - sin(bx)/b)
+    // The solution is w = A (cosh ax - cos bx) + B (sinh(ax)/a - sin(bx)/b).
     const Complex moment = a * a * std::cosh(a) + b * b * std::cos(b);
     return moment * moment -
            (a * std::sinh(a) + b * std::sin(b)) * (a * a * a * std::sinh(a) - b * b * b * std::sin(b));
@@ -36,8 +36,8 @@ Complex exact_eigenvalue(double load, double eta, Complex guess) {
   return lambda;
 }
 
-/// In the x-y plane; bending out of it is far stiffer. `slenderness`: EI over GA L^2 and EA L^2, and rotary inertia
-/// over m L^2.
+/// The column bends in the x-y plane; it is far stiffer out of it. `slenderness`: EI over GA L^2 and EA L^2, and rotary
+/// inertia over m L^2.
 SceneBuilder column(double load, double eta, double slenderness) {
   SceneBuilder b;
   scene::DirectSection s = section(1 / slenderness, 1 / slenderness, 1e4, 1, 1, 2 * slenderness, slenderness);
@@ -60,8 +60,8 @@ Complex eigenvalue(const Mode& mode) {
   return {mode.rate, 2 * kPi * mode.frequency};
 }
 
-/// Shortening and shear change the load in effect by some P / GA of itself, rotary inertia and shear the frequency by
-/// some omega / sqrt(GA ...) of itself; the factors are of order one.
+/// Shortening and shear change the effective load by about P / GA of itself. Rotary inertia and shear change the
+/// frequency by about omega / sqrt(GA ...) of itself. The factors are of order one.
 double effect_of_slenderness(double load, double eta, double slenderness, Complex exact) {
   return std::abs(exact_eigenvalue(load * (1 + 4 * load * slenderness), eta, exact) - exact) +
          4 * std::norm(exact) * slenderness;
@@ -69,7 +69,7 @@ double effect_of_slenderness(double load, double eta, double slenderness, Comple
 
 TEST(BecksColumn, FluttersBeyondItsCriticalLoad) {
   const Complex exact = exact_eigenvalue(21, 0, {2, 11});
-  // From a program of its own.
+  // The values come from an independent program.
   EXPECT_NEAR(exact.imag() / (2 * kPi), 1.7407335652915, 1e-12);
   EXPECT_NEAR(exact.real(), 2.124940618498, 1e-11);
   double errors[2];
@@ -80,7 +80,7 @@ TEST(BecksColumn, FluttersBeyondItsCriticalLoad) {
     EXPECT_LT(modes[0].damping_ratio(), 0);
     errors[k] = std::abs(eigenvalue(modes[0]) - exact);
     EXPECT_LT(errors[k], effect_of_slenderness(21, 0, slenderness, exact));
-    // Its partner decays alike; the others neither grow nor decay.
+    // The partner mode decays at the same rate. The other modes neither grow nor decay.
     EXPECT_NEAR(modes[1].rate, -modes[0].rate, 1e-6 * modes[0].rate);
     EXPECT_NEAR(modes[1].frequency, modes[0].frequency, 1e-6 * modes[0].frequency);
     EXPECT_EQ(modes[2].rate, 0);
@@ -98,7 +98,7 @@ TEST(BecksColumn, OscillatesBelowIt) {
   EXPECT_GT(modes[1].frequency, 1.1 * modes[0].frequency);
 }
 
-// Ziegler's paradox: internal damping, however small, brings the critical load down from 20.05 to 10.94.
+// Ziegler's paradox: any internal damping lowers the critical load from 20.05 to 10.94.
 TEST(BecksColumn, InternalDampingDestabilises) {
   const double eta = 1e-3;
   for (const double load : {10.0, 12.0, 18.0}) {
@@ -111,7 +111,7 @@ TEST(BecksColumn, InternalDampingDestabilises) {
   }
 }
 
-// A dead load has a potential: the column buckles, and does not flutter.
+// A dead load has a potential: the column buckles and does not flutter.
 TEST(DeadLoad, Diverges) {
   SceneBuilder b = column(3, 0, 1e-6);  // Euler's load is pi^2 / 4
   b.scene.loads.back().frame = scene::LoadFrame::World;

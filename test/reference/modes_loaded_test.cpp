@@ -1,5 +1,5 @@
-/// Natural modes about a loaded equilibrium: tension, the critical loads of a column and of a right-angle frame (case
-/// S9).
+/// Tests natural modes about a loaded equilibrium: tension, and the critical loads of a column and of a right-angle
+/// frame (case S9).
 
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace flexarm::test {
 namespace {
 
-/// omega^2 of the lowest mode of the equilibrium, negative where it grows.
+/// omega^2 of the lowest mode about the equilibrium; negative if the mode grows.
 double lowest_square(const SceneBuilder& builder) {
   Simulation simulation(builder.scene);
   if (!simulation.solve_static(1, Equilibrium::UnderTheLoads).converged) throw std::runtime_error("no equilibrium");
@@ -21,9 +21,9 @@ double lowest_square(const SceneBuilder& builder) {
   return std::pow(2 * kPi * mode.frequency, 2) - std::pow(mode.rate, 2);
 }
 
-/// Load at which the equilibrium under `scene(load)` ceases to be unique: omega^2 of its lowest mode changes sign.
-/// Bisection to one per cent of the load, then the root of the cubic through four loads around it: closer to the
-/// critical load the sign drowns in round-off.
+/// The critical load of scene(load), at which omega^2 of the lowest mode changes sign. First bisection to one per cent
+/// of the load, then the root of the cubic polynomial through four loads around it. Closer to the critical load,
+/// round-off dominates the sign.
 template <class Scene>
 double critical_load(const Scene& scene, double below, double above) {
   EXPECT_GT(lowest_square(scene(below)), 0);
@@ -32,7 +32,7 @@ double critical_load(const Scene& scene, double below, double above) {
     const double middle = 0.5 * (below + above);
     (lowest_square(scene(middle)) < 0 ? above : below) = middle;
   }
-  // The load as the cubic polynomial of omega^2 (Lagrange), at zero.
+  // The load as a cubic polynomial of omega^2 (Lagrange), evaluated at zero.
   std::array<double, 4> loads, squares;
   for (int k = 0; k < 4; ++k) squares[k] = lowest_square(scene(loads[k] = below + (k - 1) * (above - below)));
   double root = 0;
@@ -45,7 +45,7 @@ double critical_load(const Scene& scene, double below, double above) {
   return root;
 }
 
-// From a beam to a string: tension up to thirty times the bending stiffness over the length squared.
+// From a beam to a string: the tension is up to thirty times the bending stiffness over the length squared.
 TEST(TensionedBeam, FrequenciesAgreeWithTheFrequencyEquation) {
   PlaneBeam beam;
   beam.rotary_inertia = 1e-4;
@@ -75,7 +75,8 @@ TEST(Column, LowestFrequencyVanishesAtEulersLoad) {
   EXPECT_NEAR(critical_load(scene, 0.9 * euler, 1.1 * euler), euler, 1e-7 * euler);
 }
 
-/// Two legs of 0.24 m, 30 mm wide in the frame's plane and 0.6 mm thick; force along the clamped leg at the free end.
+/// Two legs of 0.24 m, 30 mm wide in the frame's plane and 0.6 mm thick. The force at the free end acts along the
+/// clamped leg.
 SceneBuilder frame(double force) {
   const double length = 0.24, width = 30e-3, thickness = 0.6e-3, young = 7.124e10, shear = young / (2 * 1.31);
   const double area = width * thickness;
@@ -90,7 +91,7 @@ SceneBuilder frame(double force) {
   return builder;
 }
 
-/// Critical loads: loss of uniqueness of the out-of-plane equations on the exact plane path, mesh-free.
+/// Mesh-free critical loads: the out-of-plane equations on the exact plane path lose uniqueness there.
 TEST(RightAngleFrame, CriticalLoads) {
   const double away = critical_load([](double load) { return frame(load); }, 1.0, 1.2);
   const double towards = critical_load([](double load) { return frame(-load); }, 0.6, 0.75);

@@ -1,4 +1,4 @@
-/// Frequencies of a thin circular ring, one link that is joined to itself, against the closed forms of inextensible
+/// Tests frequencies of a thin circular ring, one link whose ends are connected, against closed forms of inextensible
 /// bending.
 
 #include <cmath>
@@ -12,11 +12,11 @@
 namespace flexarm::test {
 namespace {
 
-/// EI / (EA R^2), EI / (GA R^2) and rotary inertia over m R^2.
+/// EI / (EA R^2), EI / (GA R^2), and rotary inertia over m R^2.
 constexpr double kThinness = 1e-6;
 constexpr double kTorsionStiffness = 0.5;  ///< GJ [N m^2]
 
-/// Radius 1 m, EI = 1 N m^2, 1 kg/m, in the x-y plane; its end is joined to its beginning.
+/// A ring with radius 1 m, EI = 1 N m^2, 1 kg/m, in the x-y plane. Its end is connected to its beginning.
 SceneBuilder ring(scene::JointKind seam = scene::JointKind::Fixed) {
   SceneBuilder b;
   const double stiff = 1 / kThinness;
@@ -34,12 +34,12 @@ SceneBuilder ring(scene::JointKind seam = scene::JointKind::Fixed) {
   return b;
 }
 
-/// Circular frequency of bending with n waves, in the plane for `coupling` 1, out of it for EI / GJ.
+/// Circular frequency of bending with n waves. `coupling` is 1 in the plane, and EI / GJ out of it.
 double frequency(double n, double coupling) {
   return n * (n * n - 1) / std::sqrt(n * n + coupling);
 }
 
-// Each twice. Extension, shear and rotary inertia change them by some n^2 kThinness.
+// Each frequency occurs twice. Extension, shear and rotary inertia change it by about n^2 kThinness.
 TEST(Ring, FrequenciesInAndOutOfItsPlane) {
   SceneBuilder b = ring();
   b.joint("free", scene::JointKind::Floating, "world", "ring");

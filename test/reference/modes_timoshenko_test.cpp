@@ -1,4 +1,4 @@
-/// Spectra of Reissner (Timoshenko) beams (case M2): published values, order of convergence.
+/// Tests spectra of Reissner (Timoshenko) beams (case M2): published values and order of convergence.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace flexarm::test {
 namespace {
 
-/// omega sqrt(m L^4 / EI) for rotary inertia j / (m L^2) and shear compliance EI / (GA L^2): Rayleigh-Ritz with
-/// Legendre polynomials, all digits converged.
+/// omega sqrt(m L^4 / EI) for rotary inertia j / (m L^2) and shear compliance EI / (GA L^2), by Rayleigh-Ritz with
+/// Legendre polynomials; all digits are converged.
 struct PublishedSpectrum {
   const char* name;
   EndCondition root, tip;
@@ -68,7 +68,8 @@ TEST_P(TimoshenkoSpectrum, ErrorsFallWithOrderTwoP) {
     int measured = 0;
     for (int k = 0; k < 4; ++k) {
       const double exact = GetParam().omega[k];
-      // Near the round-off of the eigenvalue no order is left; the pure shear mode of the pinned beam is always exact.
+      // Near the round-off of the eigenvalue, no order is visible. The pure shear mode of the pinned beam is always
+      // exact.
       if (std::abs(coarse[k] - exact) < 1e-7 * exact) continue;
       EXPECT_NEAR(observed_order(coarse[k] - exact, fine[k] - exact), 2 * order, kOrderTolerance)
           << "order " << order << ", mode " << k + 1;
@@ -81,9 +82,9 @@ TEST_P(TimoshenkoSpectrum, ErrorsFallWithOrderTwoP) {
 INSTANTIATE_TEST_SUITE_P(Table, TimoshenkoSpectrum, testing::ValuesIn(kPublishedSpectra),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// A short square beam on simple supports in space, against closed forms and as published with
-// Exudyn's ANCFBeam3DeigTest (256 linear elements, hence 1e-4): two bending
-// planes, extension with one end free, torsion between held ends, and the second bending pair.
+// A short square beam on simple supports in space, against closed forms and Exudyn's published ANCFBeam3DeigTest (256
+// linear elements, hence 1e-4). The modes are two bending planes, extension with one free end, torsion between held
+// ends, and the second pair of bending modes.
 TEST(SpatialTimoshenkoBeam, SimplySupportedSpectrumAsPublished) {
   const double length = 2, width = 0.4, young = 1e9, poisson = 0.3, density = 7850;
   const double shear_modulus = young / (2 * (1 + poisson)), area = width * width, second = std::pow(width, 4) / 12;
@@ -96,7 +97,7 @@ TEST(SpatialTimoshenkoBeam, SimplySupportedSpectrumAsPublished) {
   builder.body("sledge", kGround, Vector3::Zero(), Vector3(kGround, 1e2, 1e2).asDiagonal());
   auto& root = builder.joint("root", scene::JointKind::Universal, "world", "arm", {0, 0, 0}, Vector3::UnitY());
   root.axis2 = Vector3::UnitZ();
-  // The ground at the tip turns with the beam's torsion, so to say not at all, and does not hold the beam's extension.
+  // The guide at the tip rotates with the beam's torsion, i.e. hardly at all, and leaves the beam's extension free.
   builder.body("cross", 1e-6, Vector3::Zero(), 1e-9 * Matrix3::Identity());
   auto& tip = builder.joint("tip", scene::JointKind::Universal, "arm", "cross", {length, 0, 0}, Vector3::UnitY());
   tip.axis2 = Vector3::UnitZ();
@@ -120,8 +121,8 @@ TEST(SpatialTimoshenkoBeam, SimplySupportedSpectrumAsPublished) {
   }
 }
 
-// The pinned beam's deflections are sines with shear and rotary inertia, too; their ratio to the rotation is that of
-// the frequency: Q' = -omega^2 m w with Q = GA (w' - theta).
+// Deflections of the pinned beam are sines, also with shear and rotary inertia. Their ratio to the rotation follows
+// from the frequency: Q' = -omega^2 m w with Q = GA (w' - theta).
 TEST(PinnedTimoshenkoBeam, ModesAreSines) {
   PlaneBeam beam;
   beam.rotary_inertia = 1e-3;
@@ -134,9 +135,9 @@ TEST(PinnedTimoshenkoBeam, ModesAreSines) {
       return std::abs(2 * kPi * candidate.frequency - exact[n - 1]) < 1e-6 * exact[n - 1];
     });
     ASSERT_NE(mode, modes.end());
-    // Amplitudes {w, theta} of {sin k x, cos k x} from k GA (k w - theta) = omega^2 m w, k = n pi.
+    // Amplitudes {w, theta} of {sin k x, cos k x} from k GA (k w - theta) = omega^2 m w, with k = n pi.
     const double k = n * kPi, w = 1, theta = k - exact[n - 1] * exact[n - 1] * beam.shear_compliance / k;
-    double scale = 0;  // from the root's rotation
+    double scale = 0;  // scale of the mode, from the root's rotation
     std::vector<NodeState> nodes = state_of(simulation).nodes;
     nodes.resize(4 * 16 + 1);
     for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -1,5 +1,5 @@
-/// Bending of tapered strips: a cut wedge, clamped where it is thick, against Bessel functions; and damping ratios that
-/// a scene asks for.
+/// Tests the bending of tapered strips against Bessel functions: a truncated wedge, clamped at its thick end. Also
+/// tests damping ratios that a scene prescribes.
 
 #include <cmath>
 
@@ -15,13 +15,13 @@ namespace flexarm::test {
 namespace {
 
 constexpr double kYoung = 70e9, kDensity = 2700;
-/// Height of the strip per distance from where it would vanish. Shear and rotary inertia, which the closed form does
-/// not know, change frequencies by the order of its square times (mode number)^2.
+/// Height of the strip over the distance from the wedge's edge. The closed form lacks shear and rotary inertia. These
+/// change frequencies by about the square of this ratio times (mode number)^2.
 constexpr double kTaper = 3e-4;
 
-/// The determinant of W = W' = 0 at x = 1 and W'' = (x^3 W'')' = 0 at x = cut for (x^3 W'')'' = (k/2)^4 x W, whose
-/// solutions are x^(-1/2) Z_1(k sqrt x), Z = J, Y, I, K (Kirchhoff 1879). Derivatives by
-/// d/dx [x^(-n/2) Z_n] = s (k/2) x^(-(n+1)/2) Z_{n+1} and d/dx [x^(n/2) Z_n] = t (k/2) x^((n-1)/2) Z_{n-1}.
+/// The determinant of W = W' = 0 at x = 1 and W'' = (x^3 W'')' = 0 at x = cut, for (x^3 W'')'' = (k/2)^4 x W. Its
+/// solutions are x^(-1/2) Z_1(k sqrt x), Z = J, Y, I, K (Kirchhoff 1879). Derivatives: d/dx [x^(-n/2) Z_n] = s (k/2)
+/// x^(-(n+1)/2) Z_{n+1} and d/dx [x^(n/2) Z_n] = t (k/2) x^((n-1)/2) Z_{n-1}.
 double wedge_determinant(double k, double cut) {
   struct Kind {
     double (*value)(double, double);
@@ -41,7 +41,7 @@ double wedge_determinant(double k, double cut) {
   return rows.determinant();
 }
 
-/// The first `count` k.
+/// The lowest `count` roots k.
 std::vector<double> wedge_roots(double cut, int count) {
   std::vector<double> roots;
   const double step = 0.05;
@@ -58,7 +58,7 @@ std::vector<double> wedge_roots(double cut, int count) {
   return roots;
 }
 
-/// A strip of which `cut` of the wedge's length of 1 m is missing at its thin end.
+/// A strip: the wedge of length 1 m without the fraction `cut` at its thin end.
 Simulation strip(double cut, const std::string& damping = "") {
   const auto station = [](double at, double height) {
     return fmt::format(R"(<station at="{}"><rectangle width="0.02" height="{}"/></station>)", at, height);

@@ -1,4 +1,4 @@
-// Numerical dissipation never adds energy and never touches momenta: hard cases.
+// Tests in hard cases that numerical dissipation never adds energy and never changes momenta.
 #include <algorithm>
 #include <cstdio>
 
@@ -15,14 +15,14 @@ struct HardCase {
   SceneBuilder scene;
   double step;
   int steps;
-  double stiffness;  ///< of the sections in tension [N]
+  double stiffness;  ///< axial stiffness of the sections [N]
   bool starts_in_equilibrium = false;
   bool is_free = false;
   friend std::ostream& operator<<(std::ostream& out, const HardCase& c) { return out << c.name; }
 };
 
-/// A rubber band under tension with EA = 1e6 EI / L^2: two per cent of strain, then a blow in the middle whips it. The
-/// step resolves neither axial nor shear waves.
+/// A rubber band with EA = 1e6 EI / L^2 under tension with two per cent of strain. A blow in the middle makes it whip.
+/// The step resolves neither axial nor shear waves.
 HardCase stretched_whip() {
   SceneBuilder b;
   b.beam("band", {{1, 0, 0}}, scene::DirectSection{1e5, 4e4, 4e4, 0.08, 0.1, 0.1, 0.1, 2e-7, 1e-7, 1e-7}, 8, 2);
@@ -34,7 +34,8 @@ HardCase stretched_whip() {
   return {"stretched_whip", b, 2e-3, 500, 1e5, true};
 }
 
-/// The tree with universal joints, thrown; its sections a thousand times stiffer in tension than in bending.
+/// The tree with joints of the given kind, thrown. Its sections are a thousand times stiffer in tension than in
+/// bending.
 HardCase thrown_tree(JointKind kind, const std::string& name) {
   SceneBuilder b = free_tree(kind);
   const scene::DirectSection stiff{1e6, 5e5, 5e5, 8, 10, 12, 1, 0.02, 0.01, 0.01};
@@ -45,7 +46,7 @@ HardCase thrown_tree(JointKind kind, const std::string& name) {
   return {"thrown_tree_" + name, b, 0.02, 500, 1e6, false, true};
 }
 
-/// A cantilever bent by its own length, released in its first step.
+/// A cantilever that is bent by its own length, and released in the first step.
 HardCase sudden_release() {
   SceneBuilder b;
   b.beam("beam", {{1, 0, 0}}, scene::DirectSection{2e5, 8e4, 8e4, 1.6, 2, 2, 0.5, 2e-5, 1e-5, 1e-5}, 6, 2);
@@ -82,13 +83,13 @@ double extent(const State& state) {
   return largest;
 }
 
-/// Velocity that the round-off of positions r makes in v_1 = 2 Delta r / h - v_0; ten operations each.
+/// Velocity error by round-off of positions r in v_1 = 2 Delta r / h - v_0, for ten operations.
 double velocity_round_off(const Simulation& simulation, double step) {
   return 10 * kEpsilon * 2 * extent(state_of(simulation)) / step;
 }
 
-/// Round-off of the energy of a step: that of the velocities, and that of strains times the stress; the latter is at
-/// most that of all the strain energy in tension over a length of 1 m.
+/// Round-off of the energy in a step: that of velocities, and that of strains times the stress. The latter is at most
+/// that of all strain energy in tension over a length of 1 m.
 double energy_round_off(const Simulation& simulation, const HardCase& c) {
   const double refined = std::ldexp(c.step, -state_of(simulation).halving_level);
   const Energies e = simulation.energies();
@@ -138,7 +139,7 @@ TEST_P(NumericalDissipationInFreeFlight, MomentaAreExact) {
   Simulation simulation = start(c, order, rho);
   InvariantDrift drift(simulation);
   run(simulation, c.steps, [&] { drift.observe(); });
-  // Internal forces cancel in the sums, whatever the stress: what remains is the round-off of velocities.
+  // Internal forces cancel in the sums at any stress. Only the round-off of velocities remains.
   const double speed = std::sqrt(2 * simulation.energies().kinetic / total_mass(simulation));
   const double bound = c.steps * velocity_round_off(simulation, c.step) / speed;
   std::printf("edmc%d rho %.1f %s: drift of momentum %.1e, angular momentum %.1e of %.1e\n", order, rho, c.name.c_str(),
@@ -165,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(HardCases, NumericalDissipationDecay,
 INSTANTIATE_TEST_SUITE_P(HardCases, NumericalDissipationInFreeFlight,
                          ::testing::Combine(kOrders, kRadii, ::testing::ValuesIn(free_cases())), parameter_name);
 
-// The control: with rho_infinity = 1 the scheme is em, and nothing is lost.
+// Shows that with rho_infinity = 1 the scheme is em, and nothing is dissipated.
 TEST(NumericalDissipationDecay, NoneWhereRhoIsOne) {
   const HardCase c = sudden_release();
   Simulation simulation = start(c, 2, 1);

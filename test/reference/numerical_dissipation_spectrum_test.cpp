@@ -1,6 +1,6 @@
-// Spectrum of numerical dissipation and of structural damping: a bar that vibrates along its axis is a linear
-// oscillator; its motion over many steps follows the roots of the scheme's characteristic polynomial. Without damping
-// these approach rho_infinity for stiff bars; strong damping takes them to zero.
+// Tests the spectrum of numerical dissipation and of structural damping. A bar that vibrates along its axis is a linear
+// oscillator, whose motion over many steps follows the roots of the scheme's characteristic polynomial. Without
+// damping, the roots approach rho_infinity for stiff bars. Strong damping takes them to zero.
 #include <complex>
 #include <cstdio>
 
@@ -30,17 +30,17 @@ Polynomial operator+(Polynomial a, const Polynomial& b) {
 
 constexpr double kOscillatorStep = 0.01;  // s
 
-/// The scheme on an oscillator, in multiples of the displacement x: with p = (z - 1)/(z + 1), z the factor per step,
-/// q = (omega h)^2 and (kappa, nu, b) of numerical_dissipation(),
+/// The scheme on an oscillator, in multiples of the displacement x. z is the factor per step, p = (z - 1)/(z + 1),
+/// q = (omega h)^2, and (kappa, nu, b) are those of numerical_dissipation():
 ///   mean v = dx/h                         h v = 2 p x        (and the strain rate w = v, which has the same rule)
 ///   y_1 = y_0 + nu (dx - y_0)             y = nu (z - 1) x / (z - 1 + nu)
 ///   m dv/h + k [mean x + kappa (dx - y) + (b/h) dw + damping] = 0
-/// and with damping of r steps, whose delayed rate is w / (1 + 2 p), the last, divided by k (z + 1)/2, is
+/// With a damping of r steps, the delayed rate is w / (1 + 2 p). Then the last equation, divided by k (z + 1)/2, is
 ///   (4/q + 4 b/h^2) p^2 + 1 + 4 kappa p^2 / (2 p + nu (1 - p)) + 2 r p (1 + mu p^2 / (1 + 2 p)) = 0,  mu = min(r, 1).
 struct Oscillator {
   double q = 0, r = 0, kappa = 0, nu = 0, b = 0;  // b in units of h^2
 
-  /// Order 0: no numerical dissipation.
+  /// Order 0 is without numerical dissipation.
   Oscillator(int order, double rho, double frequency, double damping = 0) : q(frequency * frequency), r(damping) {
     if (order == 0) return;
     const NumericalDissipation d = numerical_dissipation(order, rho, kOscillatorStep);
@@ -72,7 +72,7 @@ struct Oscillator {
     const Eigen::VectorXcd found = dense_eigenpairs(companion).values;
     std::vector<Complex> values(found.data(), found.data() + n);
     for (Complex& p : values)
-      for (int iteration = 0; iteration < 3; ++iteration) {  // polished by Newton's method
+      for (int iteration = 0; iteration < 3; ++iteration) {  // refinement by Newton's method
         Complex f = c[n], slope = 0;
         for (int i = n - 1; i >= 0; --i) slope = slope * p + f, f = f * p + c[i];
         if (std::abs(slope) > 0) p -= f / slope;
@@ -85,7 +85,7 @@ Complex factor(const Complex& p) {
   return (1.0 + p) / (1.0 - p);
 }
 
-/// p of the root that is largest in modulus.
+/// p of the root with the largest modulus.
 Complex slowest(const Oscillator& oscillator) {
   Complex largest = 0;
   double modulus = -1;
@@ -105,7 +105,7 @@ struct Case {
   }
 };
 
-/// One axial element, clamped: the consistent mass at its free end is a third of its 1 kg.
+/// A clamped axial element. The consistent mass at its free end is a third of its 1 kg.
 Simulation bar(const Case& c) {
   SceneBuilder b;
   const double omega = c.frequency / kOscillatorStep;
@@ -125,7 +125,7 @@ int tip_node(const Simulation& simulation) {
   return std::get<BeamGroup<2>>(model_of(simulation).beams).elements.front().nodes[1];
 }
 
-/// Starts on the mode x = Re(u z^n) of the root p.
+/// Sets the state to the mode x = Re(u z^n) of the root p.
 void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, const Complex& u) {
   State state = state_of(simulation);
   NodeState& tip = state.nodes[tip_node(simulation)];
@@ -139,13 +139,13 @@ void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, con
 
 class Spectrum : public ::testing::TestWithParam<Case> {};
 
-// Started on the mode of the slowest root z, the bar's end follows u Re(z^n), and the energy, a quadratic form of the
-// state, is that of this mode: it decays as |z|^{2n} but for a periodic factor.
+// The bar starts in the mode of the slowest root z, so that its end follows u Re(z^n). The energy is a quadratic form
+// of the state in this mode. It decays as |z|^{2n} up to a periodic factor.
 TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const Case c = GetParam();
   const Oscillator o = c.oscillator();
   const Complex p = slowest(o), z = factor(p);
-  // The poles of the delay and of the average magnify the round-off of p.
+  // The poles of the delay and of the average amplify the round-off of p.
   const double magnified = 1 + (c.damping > 0 ? 1 / std::abs(1.0 + 2.0 * p) : 0) +
                            (c.damping > 0 && o.nu > 0 ? 1 / std::abs(o.nu + (2 - o.nu) * p) : 0);
   ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * magnified * (1 + std::abs(4 / o.q * p * p)));
@@ -153,8 +153,8 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   Simulation simulation = bar(c);
   start_on(simulation, o, p, amplitude);
   const double begin = simulation.energies().total();
-  // Each step rounds the position, which is near 1, and with it h v: the same in the amplitude, and in that of slow
-  // waves 1/(omega h) times as much.
+  // Each step rounds the position, which is near 1, and so h v. The amplitude has the same error; for slow waves it is
+  // larger by 1/(omega h).
   const double modulus = std::abs(z);
   const int steps = modulus > 1 - 1e-9 ? 500 : std::clamp(static_cast<int>(std::log(1e-5) / std::log(modulus)), 3, 500);
   double defect = 0;
@@ -168,7 +168,7 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   Simulation theory = bar(c);
   start_on(theory, o, p, u);
   const double end = simulation.energies().total(), expected = theory.energies().total();
-  // d(E)/E = 2 d(u)/|u|, twice for the four parts of the state.
+  // The bound: d(E)/E = 2 d(u)/|u|, times two for each of two pairs of the state's four parts.
   EXPECT_NEAR(end / expected, 1, 8 * round_off / std::abs(u)) << c;
   std::printf(
       "order %d rho %.2f omega h %8.2e eta %.0e h: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
@@ -194,8 +194,8 @@ std::vector<Case> damped_cases() {
 }
 INSTANTIATE_TEST_SUITE_P(Damped, Spectrum, ::testing::ValuesIn(damped_cases()));
 
-// For r <= 1 and an infinite frequency two roots are near p = -1/r: with p = (d - 1)/r the polynomial over (1 + 2 p) is
-// d^2 + r/2 to the leading order in r, so that |d| = sqrt(r/2) and 1 - |z| = 2 r. The next order is smaller by sqrt(r).
+// For r <= 1 and an infinite frequency, two roots are near p = -1/r. With p = (d - 1)/r, the polynomial over (1 + 2 p)
+// is d^2 + r/2 to leading order in r. So |d| = sqrt(r/2) and 1 - |z| = 2 r. The next order is smaller by sqrt(r).
 TEST(SpectralRadius, WeakDampingOfHighFrequencies) {
   for (const double r : {1e-4, 1e-3, 1e-2}) {
     const double modulus = std::abs(factor(slowest(Oscillator(0, 1, 1e8, r))));
@@ -203,9 +203,9 @@ TEST(SpectralRadius, WeakDampingOfHighFrequencies) {
   }
 }
 
-// For r >= 1 the polynomial is 2 r p (1 + p)^2 + (1 + 2 p) (1 + 4 p^2/q): one slow root, the spring's creeping through
-// the damper, p = -1/(2 r), and two near p = -1, |1 + p| = sqrt((1 + 4/q) / 2 r) =: d, |z| = d/2. Twice that bounds
-// them.
+// For r >= 1 the polynomial is 2 r p (1 + p)^2 + (1 + 2 p) (1 + 4 p^2/q). One root is slow: the spring creeps through
+// the damper, p = -1/(2 r). Two roots are near p = -1, with |1 + p| = sqrt((1 + 4/q) / 2 r) =: d and |z| = d/2. The
+// bound is twice that.
 TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
   for (const double frequency : {1e-1, 1.0, 1e2, 1e6})
     for (const double damping : {1e4, 1e6, 1e8}) {
@@ -221,9 +221,9 @@ TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
     }
 }
 
-// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. In s = 2 p the scheme adds at most r s^3/4,
-// and log z = s + s^3/12: together an error of w^3 (1/12 + zeta/4 / sqrt(1 - zeta^2)) with w = sqrt(q) = |s| and the
-// fraction of critical damping zeta = r w/2. Twice that is the bound.
+// For a resolved frequency, the exact factor is exp(s) with s^2/q + r s + 1 = 0. In s = 2 p the scheme adds at most r
+// s^3/4, and log z = s + s^3/12. Together this is an error of w^3 (1/12 + zeta/4 / sqrt(1 - zeta^2)), with w = sqrt(q)
+// = |s| and the damping ratio zeta = r w/2. The bound is twice that.
 TEST(SpectralRadius, ResolvedFrequenciesHaveTheirDamping) {
   for (const double w : {1e-3, 1e-2, 1e-1})
     for (const double zeta : {1e-3, 1e-2, 0.1, 0.5}) {
@@ -236,10 +236,10 @@ TEST(SpectralRadius, ResolvedFrequenciesHaveTheirDamping) {
     }
 }
 
-// With P = (1 + rho)/(1 - rho), the polynomial times its denominator is, to first order in 1/q,
+// Let P = (1 + rho)/(1 - rho). To first order in 1/q, the polynomial times its denominator is
 //   first order:  (p + P)^2 / P^2 + 4 p^2/q = 0                       |p + P| = 2 P^2 / sqrt(q),
 //   second order: (p + P)^3 / (3 P^2) + (4 p^2/q) (p + P/3) = 0       |p + P| = 2 P^{5/3} / q^{1/3},
-// so that the modulus of every root tends to rho as |dz| = 2 |p + P| / (1 + P)^2; twice that bounds it.
+// So the modulus of every root tends to rho as |dz| = 2 |p + P| / (1 + P)^2. The bound is twice that.
 TEST(SpectralRadius, TendsToRhoInfinity) {
   for (const int order : {1, 2})
     for (const double rho : {0.0, 0.3, 0.5, 0.8, 0.95}) {
@@ -247,7 +247,7 @@ TEST(SpectralRadius, TendsToRhoInfinity) {
       for (const double frequency : {1e4, 1e6, 1e8}) {
         const double q = frequency * frequency;
         const double dp = order == 1 ? 2 * P * P / std::sqrt(q) : 2 * std::pow(P, 5.0 / 3) / std::cbrt(q);
-        // A root of multiplicity n is known to the n-th root of the round-off of the coefficients.
+        // A root of multiplicity n is accurate to the n-th root of the coefficients' round-off.
         const double numerical = 10 * P * std::pow(kEpsilon, 1.0 / (order + 1));
         for (const Complex& p : Oscillator(order, rho, frequency).roots())
           EXPECT_LT(std::abs(factor(p) + rho), 2 * (2 * dp + numerical) / std::pow(1 + P, 2))
@@ -256,10 +256,10 @@ TEST(SpectralRadius, TendsToRhoInfinity) {
     }
 }
 
-// What resolved frequencies lose per step: for small q, p = i sqrt(q)/2 + delta with
+// The loss per step at resolved frequencies: for small q, p = i sqrt(q)/2 + delta with
 //   first order:  delta = -kappa q / 4                                1 - |z| = kappa q / 2,
 //   second order: delta = -c q^2 / 32, c = 4 kappa (2 - nu) / nu^2    1 - |z| = c q^2 / 16,
-// the next terms being smaller by a factor of the order of sqrt(q) P.
+// The next terms are smaller by a factor of the order of sqrt(q) P.
 TEST(SpectralRadius, ResolvedFrequenciesLoseLittle) {
   for (const double rho : {0.0, 0.5, 0.8}) {
     const double frequency = 1e-2, q = frequency * frequency, next = 10 * frequency * (1 + rho) / (1 - rho);

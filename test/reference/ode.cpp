@@ -1,3 +1,4 @@
+// An ODE solver of high accuracy (extrapolation) for reference solutions; see ode.h.
 #include "reference/ode.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace {
 
 constexpr int kColumns = 8;
 
-/// Gragg's modified midpoint rule with `count` (even) sub-steps: its error has even powers of the sub-step only.
+/// Gragg's modified midpoint rule with `count` (even) sub-steps. Its error contains only even powers of the sub-step.
 Eigen::VectorXd modified_midpoint(const OdeFunction& f, double t, const Eigen::VectorXd& y, double step, int count) {
   const double h = step / count;
   Eigen::VectorXd before = y, now = y + h * f(t, y);
@@ -30,7 +31,7 @@ Eigen::VectorXd solve_ode(const OdeFunction& f, double from, double to, const Ei
   double t = from, step = length / 16;
   while (std::abs(to - t) > smallest) {
     if (std::abs(step) > std::abs(to - t)) step = to - t;
-    std::array<Eigen::VectorXd, kColumns> table;  // the last row of Neville's scheme
+    std::array<Eigen::VectorXd, kColumns> table;  // last row of Neville's scheme
     int used = 0;
     for (int k = 0; k < kColumns && used == 0; ++k) {
       Eigen::VectorXd value = modified_midpoint(f, t, y, step, 2 * (k + 1));

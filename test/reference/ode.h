@@ -1,5 +1,5 @@
 #pragma once
-/// Ordinary differential equations to nearly round-off, as independent reference for the mechanism's dynamics.
+/// Solves ordinary differential equations to nearly round-off, as an independent reference for dynamics.
 
 #include <functional>
 

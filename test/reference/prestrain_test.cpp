@@ -1,4 +1,4 @@
-// Beams that bend, twist and grow by heat, tendons or shape memory.
+// Tests beams that bend, twist and grow by prestrain, e.g. by heat, tendons or shape memory.
 #include <cmath>
 
 #include "math/pi.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr scene::DirectSection kSection{4e3, 1e3, 1e3, 6, 8, 12, 1, 0.01, 0.004, 0.006};
 
-/// Along x, 1 m long.
+/// A cantilever along x, 1 m long.
 SceneBuilder cantilever(int elements, int order) {
   SceneBuilder b = cantilever_scene({{line({1, 0, 0})}, kSection}, elements, order);
   b.scene.integrator.tolerance = 1e-12;
@@ -37,7 +37,7 @@ Pose equilibrium_tip(const SceneBuilder& b) {
 
 constexpr double kCurvature = 2;
 
-/// An arc of 2 rad: what heat from one side makes of a strip.
+/// Tip of a strip that heat from one side bends to an arc of 2 rad.
 Pose heated_strip(int elements, int order) {
   SceneBuilder b = cantilever(elements, order);
   arm(b).prestrain[kBendingZ] = TimeFunction(kCurvature);
@@ -58,9 +58,9 @@ TEST(Prestrain, ThermalArc) {
   }
 }
 
-// Strains that leave a straight line straight are met exactly by any mesh.
+// Any mesh represents exactly the strains that leave a straight line straight.
 TEST(Prestrain, GrowsShearsAndTwistsExactly) {
-  constexpr double kTolerance = 1e-12;  // Newton's
+  constexpr double kTolerance = 1e-12;  // Newton's tolerance
   SceneBuilder b = cantilever(1, 1);
   arm(b).prestrain[kAxial] = TimeFunction(0.02);
   arm(b).prestrain[kShearY] = TimeFunction(-0.03);
@@ -73,7 +73,8 @@ TEST(Prestrain, GrowsShearsAndTwistsExactly) {
   EXPECT_LT(so3::log(tip.orientation * so3::exp_quaternion(Vector3(-1.5, 0, 0))).norm(), kTolerance);
 }
 
-// A rod between two walls is pressed by its heat, EA alpha T; its strain is none, that of its stress is the heat's.
+// Heat presses a rod between two walls by EA alpha T. Its published strain is zero, and its stress belongs to the
+// prestrain.
 TEST(Prestrain, HeldRodIsPressed) {
   SceneBuilder b = cantilever(4, 2);
   close_loop(b, "wall", scene::JointKind::Fixed, "world", "arm", {1, 0, 0});
@@ -89,7 +90,7 @@ TEST(Prestrain, HeldRodIsPressed) {
   EXPECT_NEAR(simulation.energies().strain, 0.5 * kSection.ea * 1e-6, 1e-10 * kSection.ea * 1e-3);
 }
 
-// Prestrains are those of the reference line, also where the mass centre is elsewhere in the section.
+// Prestrains belong to the reference line, also if the mass centre is elsewhere in the section.
 TEST(Prestrain, IsOfTheReferenceLine) {
   SceneBuilder b = cantilever(16, 4);
   scene::MatrixSection section;
@@ -104,14 +105,14 @@ TEST(Prestrain, IsOfTheReferenceLine) {
   ASSERT_TRUE(simulation.solve_static(4).converged);
   std::vector<BeamPoint> points;
   simulation.beam_points(1, 0, points);
-  // Order 8 in (curvature times the element's length): (1.4 / 16)^8 = 3e-9.
+  // The error is of order 8 in (curvature times the element's length): (1.4 / 16)^8 = 3e-9.
   for (const BeamPoint& point : points) EXPECT_LT((point.strain - strains).norm(), 1e-8);
 }
 
 // ---------------------------------------------------------------- dynamics
 
-/// An arm on a hinge, with a second one welded to its end, whose tendons pull all the time; smoothly from the start, so
-/// that no waves come up which steps do not resolve.
+/// Two welded beams on a hinge, whose tendons pull all the time. The pull starts smoothly, so that it excites no waves
+/// that steps do not resolve.
 SceneBuilder muscles(const std::string& damping = "") {
   SceneBuilder b;
   for (const char* name : {"upper", "lower"}) {
@@ -130,7 +131,7 @@ SceneBuilder muscles(const std::string& damping = "") {
 
 class PrestrainBy : public ::testing::TestWithParam<const char*> {};
 
-// What changes a prestrain does work, by which the energy grows: the account closes as without.
+// Changing prestrains do work, which is part of the energy account. The account closes.
 TEST_P(PrestrainBy, ClosesTheEnergysAccount) {
   for (const char* damping : {"", "1e-3"}) {
     SceneBuilder b = muscles(damping);
@@ -149,14 +150,14 @@ TEST_P(PrestrainBy, ClosesTheEnergysAccount) {
 INSTANTIATE_TEST_SUITE_P(ConservingSchemes, PrestrainBy,
                          ::testing::Values("em", "em_symmetric", "em4", "std", "beta1", "edmc2"));
 
-/// Where the tip is after 0.3 s.
+/// Position of the tip after 0.3 s.
 Vector3 tip_after(const std::string& scheme, int steps) {
   Simulation simulation(muscles().scene, options(scheme, 0.3 / steps, 1e-12));
   for (int n = 0; n < steps; ++n) EXPECT_TRUE(simulation.step().converged);
   return simulation.probe(0).pose.position;
 }
 
-// The motion has the order of the scheme in every family.
+// In every family, the motion has the order of the scheme.
 TEST(Prestrain, KeepsTheOrderOfSchemes) {
   for (const auto& [scheme, order] : {std::pair<const char*, int>{"em", 2},
                                       {"em4", 4},
@@ -165,19 +166,19 @@ TEST(Prestrain, KeepsTheOrderOfSchemes) {
                                       {"hht1", 2},
                                       {"hht2", 2},
                                       {"hht3", 2}}) {
-    const int steps = order == 4 ? 75 : 300;  // with more, the higher order is near round-off
+    const int steps = order == 4 ? 75 : 300;  // with more steps, order 4 would be near round-off
     const Vector3 coarse = tip_after(scheme, steps), middle = tip_after(scheme, 2 * steps),
                   fine = tip_after(scheme, 4 * steps);
     const double observed = observed_order((coarse - middle).norm(), (middle - fine).norm());
     if (order == 2) EXPECT_NEAR(observed, order, kOrderTolerance) << scheme;
-    // Errors of symmetric steps have even orders: with means over the parts of a step that of order 4 is small beside
-    // that of order 6 until round-off.
+    // Symmetric steps have errors of even order. With means over the parts of a step, the error of order 4 is smaller
+    // than that of order 6 down to round-off.
     if (order == 4) EXPECT_GT(observed, order - kOrderTolerance) << scheme;
   }
 }
 
-// Families differ by their meshes' errors and by where they have rotary inertia; of a straight rod that grows, all
-// make the same. Its motion is linear: there Newmark's trapezoidal rule conserves energy, too.
+// Families differ in mesh errors and in the location of rotary inertia. For a growing straight rod, all give the same.
+// Its motion is linear, so that Newmark's trapezoidal rule conserves energy, too.
 TEST(Prestrain, FamiliesAgreeOnAGrowingRod) {
   SceneBuilder b = cantilever(4, 2);
   arm(b).prestrain[kAxial] = function("0.01*(1-cos(8*t))^2");
@@ -200,7 +201,7 @@ TEST(Prestrain, FamiliesAgreeOnAGrowingRod) {
   }
 }
 
-// Prestrains are forces within a body: its momenta do not feel them.
+// Prestrains are internal forces, so they do not change momenta.
 TEST(Prestrain, KeepsMomenta) {
   SceneBuilder b;
   b.beam("eel", {{1, 0, 0}}, kSection, 4, 2);
@@ -210,13 +211,13 @@ TEST(Prestrain, KeepsMomenta) {
   for (const char* scheme : {"em", "m1", "std"}) {
     Simulation simulation(b.scene, options(scheme, 2e-3, 1e-12));
     for (int n = 0; n < 300; ++n) ASSERT_TRUE(simulation.step().converged);
-    // Round-off of 300 steps of forces near EA, or Newton's tolerance, over momenta of the order of 1.
+    // Tolerance: round-off of 300 steps with forces near EA, or Newton's tolerance, relative to momenta of order 1.
     EXPECT_LT(simulation.momentum().norm(), 1e-9) << scheme;
     EXPECT_LT(simulation.angular_momentum().norm(), 1e-9) << scheme;
   }
 }
 
-// Vibrations go on about the bent shape, whose stresses are none.
+// The beam is at rest in its bent shape, which has no stress.
 TEST(Prestrain, StartsInEquilibrium) {
   SceneBuilder b = cantilever(8, 2);
   arm(b).prestrain[kBendingZ] = TimeFunction(kCurvature);

@@ -1,3 +1,4 @@
+// Cantilevers with a load at the tip; see reference_cantilever.h.
 #include "reference_cantilever.h"
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 #pragma once
-/// Cantilevers with a load at the tip: the structure of most static reference cases.
+/// Cantilevers with a load at the tip, the structure of most static reference cases.
 
 #include <vector>
 
@@ -24,12 +24,13 @@ scene::CentrelinePiece arc(const Vector3& to, const Vector3& center, double twis
 /// The scene of a cantilever: beam "arm", probe 0 at its tip, Newton tolerance 1e-10.
 SceneBuilder cantilever_scene(const Cantilever& cantilever, int elements, int order);
 
-/// Tip section under the load.
+/// Pose of the tip section under the load.
 /// @throws std::runtime_error if Newton's method fails.
 Pose static_tip(const Cantilever& cantilever, int elements, int order, int load_steps = 1);
 
-/// Observed orders of sequences with even powers of h tend to the theoretical one with an error of order h^2; the bound
-/// leaves that room on the meshes used here, and is a fraction of the distance to the next possible order.
+/// Tolerance of observed orders. For errors with even powers of h, the observed order tends to the theoretical one with
+/// an error of order h^2. The tolerance allows for this on the meshes used here, and is a fraction of the distance to
+/// the next possible order.
 constexpr double kOrderTolerance = 0.25;
 
 }  // namespace flexarm::test

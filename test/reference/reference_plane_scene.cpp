@@ -1,3 +1,4 @@
+// Scenes of plane beams; see reference_plane_scene.h.
 #include "reference_plane_scene.h"
 
 #include <cmath>
@@ -49,11 +50,12 @@ SceneBuilder plane_scene(const PlaneBeam& beam, const EndCondition& root, const 
     builder.joint("root", kind, "world", "arm");
   }
   if (is_pinned(tip)) {
-    // Heavy turned about the tip's hinge it would cost digits of the beam's rotation, and be of no use.
+    // The body's inertia about the hinge is small: a large one would cost digits of the beam's rotation, and has no
+    // effect.
     builder.body("ground", kGround, Vector3::Zero(), Vector3(kGround, kGround, 1e-8 * kGround).asDiagonal());
     builder.joint("tip", scene::JointKind::Revolute, "arm", "ground", end);
   } else if (has_body(tip)) {
-    // Inertia in the plane only, or torsion and bending out of the plane would have slow modes too.
+    // The inertia out of the plane is small. Otherwise torsion and bending out of the plane would have slow modes, too.
     builder.body("tip", tip.mass, Vector3::Zero(), Vector3(1e-9, 1e-9, tip.inertia).asDiagonal());
     builder.joint("tip", scene::JointKind::Fixed, "arm", "tip", end);
   }

@@ -1,3 +1,4 @@
+// Reference solutions of static beams by a shooting method; see reference_shooting.h.
 #include "reference_shooting.h"
 
 #include <cmath>
@@ -10,7 +11,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Undeformed line of one piece: its root frame and its curvature in section axes.
+/// Undeformed line of one piece: the frame at its root, and its curvature in section axes.
 struct ReferenceLine {
   double length = 0, curvature = 0, twist_rate = 0;
   Matrix3 root = Matrix3::Identity();
@@ -31,13 +32,13 @@ struct ReferenceLine {
     root << tangent, normal.cross(tangent), normal;
   }
 
-  /// Undeformed section at the end: the arc's turn about its axis, then the twist about the tangent.
+  /// Undeformed section at the end: rotation of the arc about its axis, then twist about the tangent.
   Matrix3 tip() const {
     const Eigen::AngleAxisd turn(curvature * length, Vector3::UnitZ()), twist(twist_rate * length, Vector3::UnitX());
     return root * (turn * twist).toRotationMatrix();
   }
 
-  /// Upsilon_0: the arc turns about the third axis of the untwisted section.
+  /// Upsilon_0: the arc rotates about the third axis of the untwisted section.
   Vector3 upsilon(double s) const {
     const double angle = twist_rate * s;
     return {twist_rate, curvature * std::sin(angle), curvature * std::cos(angle)};

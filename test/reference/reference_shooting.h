@@ -6,12 +6,12 @@
 
 namespace flexarm::test {
 
-/// Tip of a cantilever of one piece (line or arc, possibly twisted) with a section matrix about the centreline; axes as
-/// the link's in the undeformed state.
+/// Pose of the tip of a cantilever of one piece (line or arc, possibly twisted), with a section matrix about the
+/// centreline. Axes are those of the undeformed link.
 ///
-/// r' = Lambda (e_1 + Gamma), Lambda' = Lambda (Upsilon_0 + K)^, m' = -r' x n, n = force, {Gamma, K} = C^{-1} {N, M};
-/// Newton's method on the root moment so that m(L) = moment; classical Runge-Kutta with `steps` steps (error of order
-/// 4). The load is applied in ten increments.
+/// Equations: r' = Lambda (e_1 + Gamma), Lambda' = Lambda (Upsilon_0 + K)^, m' = -r' x n, n = force, {Gamma, K} =
+/// C^{-1} {N, M}. Newton's method finds the root moment for m(L) = moment, by the classical Runge-Kutta method with
+/// `steps` steps (error of order 4). The load is applied in ten increments.
 /// @throws std::runtime_error if Newton's method fails.
 Pose shooting_tip(const Cantilever& cantilever, const Matrix6& stiffness, int steps = 3000);
 

@@ -1,3 +1,4 @@
+// Reference natural frequencies of plane beams; see reference_spectrum.h.
 #include "reference_spectrum.h"
 
 #include <cmath>
@@ -7,7 +8,7 @@
 namespace flexarm::test {
 namespace {
 
-// Entries grow like cosh(beta L) and cancel in the determinant: extended precision keeps 1e-12.
+// Entries grow like cosh(beta L) and cancel in the determinant. Extended precision keeps 1e-12.
 using Matrix = Eigen::Matrix<long double, 4, 4>;
 using Vector = Eigen::Matrix<long double, 4, 1>;
 
@@ -30,7 +31,7 @@ long double frequency_determinant(const PlaneBeam& beam, const EndCondition& roo
                                   long double omega_squared) {
   const long double L = beam.length, EI = beam.bending_stiffness, f = beam.shear_compliance, N = beam.axial_force;
   const long double stretch = 1 + N * beam.axial_compliance, m = beam.mass, j = beam.rotary_inertia;
-  // Unknowns {w / L, theta, M L / EI, Q L^2 / EI} over s / L.
+  // Unknowns are {w / L, theta, M L / EI, Q L^2 / EI} over s / L.
   const long double shear = f * EI / (L * L), force = N * L * L / EI;
   const long double w_mass = omega_squared * m * L * L * L * L / EI, w_inertia = omega_squared * j * L * L / EI;
   Matrix a = Matrix::Zero();
@@ -43,7 +44,8 @@ long double frequency_determinant(const PlaneBeam& beam, const EndCondition& roo
   a(3, 0) = -w_mass;
   const Matrix transfer = exponential(a);
 
-  // Two free amplitudes at the root; a body there takes Q = -omega^2 m w and M = -omega^2 J theta from the beam.
+  // There are two free amplitudes at the root. A body there takes Q = -omega^2 m w and M = -omega^2 J theta from the
+  // beam.
   const auto body_mass = [&](const EndCondition& end) { return omega_squared * end.mass * L * L * L / EI; };
   const auto body_inertia = [&](const EndCondition& end) { return omega_squared * end.inertia * L / EI; };
   Vector first = Vector::Zero(), second = Vector::Zero();
@@ -67,7 +69,7 @@ long double frequency_determinant(const PlaneBeam& beam, const EndCondition& roo
 
 std::vector<double> exact_frequencies(const PlaneBeam& beam, const EndCondition& root, const EndCondition& tip,
                                       int count) {
-  // March in beta = sqrt(omega), in which the roots are about equally far apart, at a hundredth of their distance.
+  // Searches in beta = sqrt(omega), in which the roots have about equal distances, with a hundredth of this distance.
   const double unit = std::sqrt(beam.bending_stiffness / beam.mass) / (beam.length * beam.length);
   const auto determinant = [&](long double beta) {
     const long double omega = unit * beta * beta;

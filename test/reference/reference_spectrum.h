@@ -1,5 +1,5 @@
 #pragma once
-/// Exact natural frequencies of uniform straight beams in one plane: roots of the frequency determinant.
+/// Exact natural frequencies of uniform straight beams in one plane, from roots of the frequency determinant.
 
 #include <array>
 #include <vector>
@@ -18,9 +18,9 @@ struct PlaneBeam {
   double axial_force = 0;                             ///< N, tension positive [N]
 };
 
-/// What an end is fixed to. Forces of inertia of a body at the end go with its mass and inertia.
+/// Support of an end. The inertia forces of a body at the end are included.
 struct EndCondition {
-  bool translates = false, rotates = false;  ///< transversely, in the plane
+  bool translates = false, rotates = false;  ///< transverse motion, rotation in the plane
   double mass = 0, inertia = 0;              ///< of a body with its centre at the end [kg], [kg m^2]
 };
 constexpr EndCondition kClamped{false, false, 0, 0}, kPinned{false, true, 0, 0}, kFree{true, true, 0, 0};
@@ -29,7 +29,8 @@ constexpr EndCondition kClamped{false, false, 0, 0}, kPinned{false, true, 0, 0},
 std::vector<double> exact_frequencies(const PlaneBeam& beam, const EndCondition& root, const EndCondition& tip,
                                       int count);
 
-/// Frequency determinant at omega^2 (negative values: growing motions); zero at omega = 0 marks a critical axial force.
+/// Frequency determinant at omega^2; negative values belong to growing motions. A zero at omega = 0 is a critical axial
+/// force.
 long double frequency_determinant(const PlaneBeam& beam, const EndCondition& root, const EndCondition& tip,
                                   long double omega_squared);
 

@@ -1,4 +1,4 @@
-// A flexible link tends to the rigid one as its stiffness grows.
+// Tests that a flexible link tends to the rigid one as its stiffness grows.
 #include <cstdio>
 #include <vector>
 
@@ -13,8 +13,8 @@ constexpr double kLength = 1.2, kMassPerLength = 0.8, kRotary = 2e-3;
 constexpr double kPathStep = 0.005;
 constexpr int kPathSteps = 300;
 
-/// A double pendulum whose upper link is a beam of `stiffness` times a base value, or (infinite) a rigid body of the
-/// same mass.
+/// A double pendulum. Its upper link is a beam with `stiffness` times a base value, or a rigid body of the same mass if
+/// `stiffness` is infinite.
 SceneBuilder pendulum(double stiffness) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -57,7 +57,7 @@ TEST_P(RigidLimit, DifferenceFallsWithTheCompliance) {
   const double soft = largest_distance(tip_path(1e2, GetParam()), rigid);
   const double medium = largest_distance(tip_path(1e4, GetParam()), rigid);
   const double stiff = largest_distance(tip_path(1e6, GetParam()), rigid);
-  // What is left at the stiff end is that the two links discretise time differently, at second order.
+  // At high stiffness, the remaining difference is that of the two links' time discretisation, of second order.
   Simulation fine(pendulum(INFINITY).scene, options(GetParam(), kPathStep / 8, 1e-11));
   double step_error = 0;
   for (const Vector3& point : rigid) {
@@ -71,7 +71,8 @@ TEST_P(RigidLimit, DifferenceFallsWithTheCompliance) {
   EXPECT_LT(stiff, std::max(3e-4 * soft, 2 * step_error));
 }
 
-/// Of the pendulum, hanging and pulled aside; its upper link without elements where the stiffness is infinite.
+/// Equilibrium position of the pendulum, hanging and pulled aside. Its upper link has no elements if the stiffness is
+/// infinite.
 Vector3 place_at_rest(double stiffness) {
   SceneBuilder b = pendulum(std::isinf(stiffness) ? 1 : stiffness);
   if (std::isinf(stiffness)) b.scene.links[1].beam->elements = 0;
@@ -81,8 +82,8 @@ Vector3 place_at_rest(double stiffness) {
   return simulation.probe(0).pose.position;
 }
 
-// A link without elements is what flexible ones tend to, like 1/stiffness; terms of the next order are 1/stiffness of
-// that.
+// Flexible links tend to the link without elements like 1/stiffness. Terms of the next order are smaller by
+// 1/stiffness.
 TEST(RigidLimit, IsTheLinkWithoutElements) {
   const Vector3 rigid = place_at_rest(INFINITY);
   double before = (place_at_rest(1e3) - rigid).norm();
@@ -96,8 +97,7 @@ TEST(RigidLimit, IsTheLinkWithoutElements) {
   }
 }
 
-// The same in motion that begins smoothly, so that it excites no vibrations: what differs is how far the link gives
-// way.
+// The same in a motion that begins smoothly, so that it excites no vibrations. Only the deflection of the link differs.
 TEST(RigidLimit, IsTheMotionOfTheLinkWithoutElements) {
   const auto path = [](double stiffness) {
     SceneBuilder b = pendulum(std::isinf(stiffness) ? 1 : stiffness);

@@ -1,4 +1,4 @@
-// All-rigid mechanisms against their textbook equations in minimal coordinates.
+// Tests mechanisms of rigid links against their textbook equations in minimal coordinates.
 #include <cstdio>
 #include <functional>
 #include <vector>
@@ -12,7 +12,7 @@ namespace {
 using Eigen::VectorXd;
 using scene::JointKind;
 
-/// A mechanism whose coordinates q obey q'' = acceleration(q, q').
+/// A mechanism whose coordinates obey q'' = acceleration(q, q').
 struct Mechanism {
   std::string name;
   SceneBuilder scene;
@@ -21,12 +21,13 @@ struct Mechanism {
   VectorXd position, velocity;  ///< at the start
 };
 
-/// Solid body, centre of mass at `center`, principal inertia about it.
+/// Adds a body with its centre of mass at `center` and principal inertia about it.
 void add_body(SceneBuilder& b, const std::string& name, double mass, const Vector3& center, const Vector3& inertia) {
   b.body(name, mass, center, inertia.asDiagonal());
 }
 
-/// Two links in the x-z plane; angles about y from the downward vertical, the second relative to the first.
+/// Two links in the x-z plane. The first angle is about y from the downward vertical, the second one relative to the
+/// first link.
 Mechanism double_pendulum() {
   const double m1 = 1.3, m2 = 0.9, l1 = 0.8, a1 = 0.5, a2 = 0.4, j1 = 0.11, j2 = 0.07;
   Mechanism m{"double_pendulum", {}, {"first", "second"}, {}, VectorXd(2), VectorXd(2)};
@@ -37,7 +38,7 @@ Mechanism double_pendulum() {
   m.scene.joint("second", JointKind::Revolute, "upper", "lower", {0, 0.05, -l1}, {0, 1, 0});
   m.acceleration = [=](const VectorXd& q, const VectorXd& rate) {
     const double c = std::cos(q[1]), s = std::sin(q[1]), w1 = rate[0], w2 = rate[0] + rate[1];
-    Eigen::Matrix2d mass;  // for the absolute angles
+    Eigen::Matrix2d mass;  // mass matrix for the absolute angles
     mass << j1 + m1 * a1 * a1 + m2 * l1 * l1, m2 * l1 * a2 * c, m2 * l1 * a2 * c, j2 + m2 * a2 * a2;
     const Eigen::Vector2d force(m2 * l1 * a2 * s * w2 * w2 - (m1 * a1 + m2 * l1) * kGravity * std::sin(q[0]),
                                 -m2 * l1 * a2 * s * w1 * w1 - m2 * a2 * kGravity * std::sin(q[0] + q[1]));
@@ -49,7 +50,7 @@ Mechanism double_pendulum() {
   return m;
 }
 
-/// A mass on a radial rail of a turning hub: angle and radius.
+/// A mass on a radial rail of a rotating hub; coordinates are angle and radius.
 Mechanism radial_slider() {
   const double hub = 0.6, mass = 1.5, spin = 0.08;
   Mechanism m{"prismatic_on_revolute", {}, {"hub", "rail"}, {}, VectorXd(2), VectorXd(2)};
@@ -67,7 +68,7 @@ Mechanism radial_slider() {
   return m;
 }
 
-/// A pendulum in a universal joint: turn about the vertical, then tilt about the turned x axis.
+/// A pendulum in a universal joint: rotation about the vertical, then tilt about the rotated x axis.
 Mechanism universal_pendulum() {
   const double mass = 1.2, length = 0.6;
   const Vector3 about_center(0.12, 0.2, 0.05);
@@ -89,14 +90,14 @@ Mechanism universal_pendulum() {
   return m;
 }
 
-/// A body on an inclined shaft: it slides down and swings about it.
+/// A body that slides down an inclined shaft and swings about it.
 Mechanism cylindrical_pendulum() {
   const double mass = 0.7, offset = 0.35, spin = 0.05, tilt = 0.6;
   Mechanism m{"cylindrical", {}, {"shaft/1", "shaft/2"}, {}, VectorXd(2), VectorXd(2)};
   m.scene.scene.gravity = {0, 0, -kGravity};
   add_body(m.scene, "bob", mass, {0, 0.2, -offset}, {0.1, spin, 0.1});
   scene::JointDescription& shaft = m.scene.joint("shaft", JointKind::Cylindrical, "world", "bob", {0, 0, 0}, {0, 1, 0});
-  shaft.origin.orientation = Eigen::AngleAxisd(tilt, Vector3::UnitX());  // raises the axis by the angle `tilt`
+  shaft.origin.orientation = Eigen::AngleAxisd(tilt, Vector3::UnitX());  // inclines the axis by the angle `tilt`
   m.acceleration = [=](const VectorXd& q, const VectorXd&) {
     return VectorXd(Eigen::Vector2d(-kGravity * std::sin(tilt), -mass * kGravity * std::cos(tilt) * offset *
                                                                     std::sin(q[1]) / (spin + mass * offset * offset)));
@@ -106,7 +107,7 @@ Mechanism cylindrical_pendulum() {
   return m;
 }
 
-/// A body thrown in a vertical plane; the joint's frame is not at its centre of mass.
+/// A body thrown in a vertical plane. The joint's frame is not at its centre of mass.
 Mechanism planar_body() {
   const double offset = 0.4;
   Mechanism m{"planar", {}, {"plane/x", "plane/y", "plane/rz"}, {}, VectorXd(3), VectorXd(3)};
@@ -114,7 +115,7 @@ Mechanism planar_body() {
   add_body(m.scene, "plate", 1.7, {offset, 0, 0.3}, {0.2, 0.3, 0.4});
   m.scene.joint("plane", JointKind::Planar, "world", "plate", {0, 0, 0}, {0, 0, 1});
   m.acceleration = [=](const VectorXd& q, const VectorXd& rate) {
-    // The centre of mass falls freely and the spin is constant.
+    // The centre of mass falls freely, and the spin is constant.
     const double w2 = rate[2] * rate[2];
     return VectorXd(Vector3(offset * std::cos(q[2]) * w2, -kGravity + offset * std::sin(q[2]) * w2, 0));
   };
@@ -163,9 +164,10 @@ TEST_P(RigidMechanism, ConvergesAtSecondOrderToTheTextbookEquations) {
   const double slope = std::log2(error[2] / error[3]);
   std::printf("%s %s: errors %.2e %.2e %.2e %.2e, slope %.3f\n", scheme.c_str(), m.name.c_str(), error[0], error[1],
               error[2], error[3], slope);
-  // The trapezoidal rule applies to the centres of mass, which the joints constrain: the largest constant of the three.
+  // Newmark's trapezoidal rule applies to the centres of mass, which the joints constrain. Its error constant is the
+  // largest of the three schemes.
   EXPECT_LT(error[3], scheme == "newmark" ? 2e-3 : 2e-4);
-  // More where the error of the published velocities prevails, which is of third order.
+  // The slope is larger where the third-order error of published velocities dominates.
   if (error[2] > 1e-9) {
     EXPECT_GT(slope, 1.9);
   }
@@ -175,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, RigidMechanism,
                                             ::testing::ValuesIn(mechanisms())),
                          [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param).name; });
 
-// Constant acceleration is in the space of every scheme: a block on an inclined rail falls exactly.
+// Every scheme represents constant acceleration exactly: a block on an inclined rail.
 TEST(RigidJoint, BlockOnAnInclinedRailIsExact) {
   for (const std::string scheme : {"em", "em0", "m1", "newmark"}) {
     SceneBuilder b;
@@ -186,7 +188,7 @@ TEST(RigidJoint, BlockOnAnInclinedRailIsExact) {
     Simulation simulation(b.scene, options(scheme, 0.01, 1e-12));
     EXPECT_EQ(simulation.degrees_of_freedom(), 1u);
     run(simulation, 100);
-    // Newmark's initial acceleration comes from a short step; its round-off is about 1e-9.
+    // Newmark's initial acceleration comes from a short step. Its round-off is about 1e-9.
     EXPECT_NEAR(simulation.position(0), 0.5 + 2 - 0.5 * 0.8 * kGravity, 1e-8) << scheme;
     EXPECT_NEAR(simulation.velocity(0), 2 - 0.8 * kGravity, 1e-8) << scheme;
   }
@@ -195,7 +197,7 @@ TEST(RigidJoint, BlockOnAnInclinedRailIsExact) {
 TEST(RigidJoint, RevoluteJointCountsItsTurns) {
   for (const std::string scheme : {"em", "em0", "m1", "newmark"}) {
     SceneBuilder b;
-    // Newmark's rule is unstable for centres of mass on a circle: there the rotor is balanced.
+    // Newmark's rule is unstable for centres of mass on a circle, so the rotor is balanced for it.
     const double offset = scheme == "newmark" ? 0.0 : 0.1;
     b.body("rotor", 2, {offset, 0, 0}, Vector3(0.2, 0.2, 0.2).asDiagonal());
     b.body("arm", 1, {offset - 0.3, 0, 0}, Vector3(0.1, 0.1, 0.1).asDiagonal());
@@ -204,7 +206,7 @@ TEST(RigidJoint, RevoluteJointCountsItsTurns) {
     initial_joint(b, "shaft", 0, 25);
     Simulation simulation(b.scene, options(scheme, 0.02, 1e-12));
     run(simulation, 400);
-    // Free rotation about a fixed axis is uniform; tangent scaling slows it by (w h)^2 / 12 = 2 %.
+    // Free rotation about a fixed axis is uniform. Tangent scaling slows it down by (w h)^2 / 12 = 2 %.
     EXPECT_GT(simulation.position(0), 100) << scheme;
     EXPECT_NEAR(simulation.position(0), 25 * 8.0, 0.025 * 25 * 8.0) << scheme;
     if (scheme == "em") {

@@ -1,4 +1,4 @@
-// A rigid body about a fixed point and in free flight, against Euler's equations; rotations far beyond 2 pi.
+// Tests a rigid body about a fixed point and in free flight against Euler's equations, for rotations far beyond 2 pi.
 #include <cstdio>
 #include <vector>
 
@@ -15,9 +15,9 @@ constexpr double kMass = 1.4;
 
 struct Top {
   Matrix3 inertia;  ///< about the fixed point, body axes
-  Vector3 center;   ///< of mass, from the fixed point
+  Vector3 center;   ///< centre of mass, from the fixed point
   Vector3 gravity;
-  Vector3 spin;  ///< at the start, body axes = world axes
+  Vector3 spin;  ///< at the start, when body axes = world axes
 };
 
 /// Orientation (w x y z) and body angular velocity at `until`.
@@ -36,7 +36,7 @@ VectorXd exact_motion(const Top& top, double until) {
   return solve_ode(f, 0, until, start);
 }
 
-/// Errors of orientation [rad] at `until` for halved steps.
+/// Expects that orientation errors [rad] at `until` have second order.
 void expect_second_order(const SceneBuilder& builder, const Top& top, double until, const std::string& scheme,
                          std::initializer_list<int> step_counts) {
   const VectorXd exact = exact_motion(top, until);
@@ -75,7 +75,7 @@ TEST_P(RigidTop, FreeBodyWithOffsetCentreOfMass) {
   const Top top{asymmetric_inertia(), Vector3::Zero(), Vector3::Zero(), {1.5, 2, -1}};
   const Vector3 center(0.3, -0.2, 0.4);
   SceneBuilder b;
-  b.scene.gravity = {0, 0, -9.81};  // without influence on the rotation
+  b.scene.gravity = {0, 0, -9.81};  // has no influence on the rotation
   b.body("body", kMass, center, top.inertia);
   b.joint("free", JointKind::Floating, "world", "body");
   initial_field(b, "body", {1, 0, 5}, top.spin);
@@ -86,7 +86,7 @@ TEST_P(RigidTop, FreeBodyWithOffsetCentreOfMass) {
   Simulation simulation(b.scene, options(GetParam(), 0.01, 1e-12));
   run(simulation, 100);
   const Vector3 fall = center + Vector3(1, 0, 5) + top.spin.cross(center) - Vector3(0, 0, 0.5 * 9.81);
-  // Newmark's initial accelerations carry round-off of about 1e-16 * |x| / h^2 = 1e-8.
+  // Newmark's initial accelerations have round-off of about 1e-16 * |x| / h^2 = 1e-8.
   const double tolerance = GetParam() == "newmark" ? 1e-7 : 1e-9;
   EXPECT_LT((simulation.probe(0).pose.position - fall).norm(), tolerance) << "the centre of mass falls on a parabola";
 }
@@ -101,13 +101,13 @@ TEST_P(RigidTop, HeavyTopPrecesses) {
   b.body("top", kMass, center, about_center);
   b.joint("ball", JointKind::Spherical, "world", "top");
   initial_field(b, "top", Vector3::Zero(), top.spin);
-  // Newmark's rule is unstable for a centre of mass on a sphere (an index-3 constraint): only short times show its
+  // Newmark's rule is unstable for a centre of mass on a sphere (an index-3 constraint). Only short times show its
   // order.
   const double until = GetParam() == "newmark" ? 0.5 : 3;
   expect_second_order(b, top, until, GetParam(), {3000, 6000});
 }
 
-// Energy of a torque-free body, and both momenta, to round-off over hundreds of turns.
+// Energy and both momenta of a torque-free body are constant to round-off over hundreds of turns.
 TEST(FreeRigidBody, TorqueFreeBodyConservesOverManyTurns) {
   SceneBuilder b;
   b.body("body", kMass, {0.2, 0.1, 0}, asymmetric_inertia());

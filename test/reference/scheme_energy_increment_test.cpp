@@ -1,5 +1,5 @@
-// Chapter 6 of Muñoz 2004 by equation: the energy that M1 (6.17) and M2 (6.21) gain in a step, and what follows for
-// the sign of M2's; STD's energy (6.12) and its interpolation, which is not strain-invariant.
+// Tests equations of chapter 6 of Muñoz 2004: the energy that M1 (6.17) and M2 (6.21) gain in a step, the sign of M2's
+// gain, STD's energy (6.12), and its interpolation, which is not strain-invariant.
 #include <cstdio>
 
 #include "elements/beam_point.h"
@@ -9,7 +9,7 @@
 namespace flexarm::test {
 namespace {
 
-/// The right-hand sides of (6.17) and (6.21), evaluated from the states at both ends of a step.
+/// Terms of the right-hand sides of (6.17) and (6.21), evaluated from the states at both ends of a step.
 struct EnergyIncrement {
   double unscaled = 0;  ///< int (1 - tan(w/2)/(w/2)) w . (mean r' x n) ds: Delta E_1 of (6.17)
   double lever = 0;     ///< -1/2 int w . (Delta r' x n) ds
@@ -50,9 +50,9 @@ EnergyIncrement energy_increment(const Model& model, const State& begin, const S
   return out;
 }
 
-/// Round-off of the balance of a step: the residual of the nodes, at which Newton's last update leaves them, is known
-/// to epsilon times the forces that cancel in it (section stiffness C times strains of rounded unit vectors; inertia
-/// 4 m/h^2 times rounded positions of size r), and works along the increments of the nodes; ten operations each.
+/// Round-off of a step's balance. Newton's last update leaves a residual of epsilon times the forces that cancel in it:
+/// section stiffness C times strains of rounded unit vectors, and inertia 4 m/h^2 times rounded positions of size r. It
+/// works over the increments of the nodes. Ten operations each.
 double round_off(const Simulation& simulation, const State& begin, double stiffness) {
   double work = 0;
   const double h = simulation.step_size(), inertia = 4 * total_mass(simulation) / (h * h);
@@ -71,7 +71,7 @@ Simulation tumbling(const std::string& scheme, Interpolation interpolation) {
   b.scene.integrator.step = 0.05;
   b.scene.integrator.tolerance = 1e-10;
   SimulationOptions options;
-  options.reuse_factorisation = false;  // quadratic convergence: what remains is round-off
+  options.reuse_factorisation = false;  // quadratic convergence leaves only round-off
   return Simulation(b.scene, options);
 }
 
@@ -79,7 +79,7 @@ struct Identity {
   double largest_defect = 0, largest_gain = 0;  ///< [round-off]
 };
 
-/// Largest |E_{n+1} - E_n - predicted| and largest |predicted| of 200 steps.
+/// Largest |E_{n+1} - E_n - predicted| and largest |predicted| over 200 steps, in multiples of round-off.
 template <class Predict>
 Identity check_identity(Simulation simulation, const Predict& predict) {
   Identity out;
@@ -110,7 +110,7 @@ TEST(EnergyIncrement, OfM2IsEquation621) {
   std::printf("M2: defect %.2g, gain %.2g units of round-off\n", m2.largest_defect, m2.largest_gain);
   EXPECT_LT(m2.largest_defect, 1);
   EXPECT_GT(m2.largest_gain, 1e4);
-  // Each of the three terms is needed.
+  // Each of the three terms is necessary.
   for (int left_out = 0; left_out < 3; ++left_out) {
     const Identity part = check_identity(tumbling("m2", Interpolation::Incremental), [&](const EnergyIncrement& e) {
       return sum(e) - (left_out == 0 ? e.unscaled : left_out == 1 ? e.lever : e.backward);
@@ -119,7 +119,8 @@ TEST(EnergyIncrement, OfM2IsEquation621) {
   }
 }
 
-// The derivation interpolates increments as the test functions: with the total interpolation it does not hold.
+// The derivation interpolates increments with the test functions. So the equation does not hold for the total
+// interpolation.
 TEST(EnergyIncrement, NeedsInterpolatedIncrements) {
   const Identity total =
       check_identity(tumbling("m1", Interpolation::Total), [](const EnergyIncrement& e) { return e.unscaled; });
@@ -128,7 +129,7 @@ TEST(EnergyIncrement, NeedsInterpolatedIncrements) {
 
 // ---------------------------------------------------------------- the sign of M2's increment
 
-/// A free straight beam at rest in space that vibrates across and along its axis: tip velocities of `amplitude` [m/s].
+/// A free straight beam that vibrates across and along its axis, with tip velocities of `amplitude` [m/s].
 Simulation vibrating(const std::string& scheme, double step, double amplitude) {
   SceneBuilder b;
   b.beam("beam", {{2, 0, 0}}, soft_section(), 4, 2);
@@ -155,10 +156,10 @@ Simulation vibrating(const std::string& scheme, double step, double amplitude) {
   return simulation;
 }
 
-// Where velocities and deformations are small, of size a, the increment w, the force n and r' - e_1 are of size a
-// across the plane, in it and in it: w.(e_1 x n) vanishes to first order in a for extension and is of size a^2 for
-// shear, times 1 - tan(w/2)/(w/2) of size a^2; w.(Delta r' x n) with w normal to the plane, Delta r' and n transverse
-// in the plane is of size a^4, too. |Delta v|^2 is of size a^2: it decides the sign.
+// For velocities and deformations of small size a, the term w.(e_1 x n) vanishes to first order in a for extension, and
+// is of size a^2 for shear. It is multiplied by 1 - tan(w/2)/(w/2) of size a^2. In w.(Delta r' x n), w is normal to the
+// plane, and Delta r' and n are transverse in the plane; this term is of size a^4, too. |Delta v|^2 is of size a^2, so
+// it decides the sign.
 TEST(EnergyOfM2, FallsInEveryStepOfASmallVibration) {
   Simulation m2 = vibrating("m2", 2e-3, 1e-2), m1 = vibrating("m1", 2e-3, 1e-2);
   const double begin = m2.energies().total();
@@ -180,7 +181,7 @@ TEST(EnergyOfM2, FallsInEveryStepOfASmallVibration) {
   EXPECT_LT(drift_of_m1, 1e-4 * (begin - energy));
 }
 
-// M1's increment (6.17) has no sign.
+// M1's increment (6.17) may have either sign.
 TEST(EnergyOfM1, RisesAndFalls) {
   Simulation m1 = tumbling("m1", Interpolation::Incremental);
   double energy = m1.energies().total(), highest = 0, lowest = 0;
@@ -194,8 +195,8 @@ TEST(EnergyOfM1, RisesAndFalls) {
   EXPECT_LT(lowest, -1e-8 * energy);
 }
 
-// Delta v = h a (1 + O(omega h)): one step from a vibrating state loses (h^2/2) int |a|^2 A_rho ds, to that order; the
-// waves that make up most of the acceleration have omega of about 50 / s.
+// With Delta v = h a (1 + O(omega h)), a step from a vibrating state loses (h^2/2) int |a|^2 A_rho ds to leading order.
+// The waves that give most of the acceleration have omega of about 50 / s.
 TEST(EnergyOfM2, LossPerStepIsHalfTheSquareOfStepTimesAcceleration) {
   const double coarsest = 1e-3;
   Simulation start = vibrating("m1", coarsest, 1e-3);  // so small that the other terms are 1e-5 of this one
@@ -209,7 +210,7 @@ TEST(EnergyOfM2, LossPerStepIsHalfTheSquareOfStepTimesAcceleration) {
     return energy - simulation.energies().total();
   };
   double backward = 0;
-  const double tiny = 1e-2 * coarsest;  // a = Delta v / h of M1, to second order in h at its middle
+  const double tiny = 1e-2 * coarsest;  // a = Delta v / h of M1, to second order in h at the middle of the step
   loss("m1", tiny, backward);
   const double half_square = -backward / (tiny * tiny);  // 1/2 int |a|^2 A_rho ds
   std::vector<double> losses;
@@ -237,8 +238,8 @@ TEST(EnergyOfStd, IsExactWithBothMomenta) {
   EXPECT_LT(drift.angular_momentum(), 1e-11);
 }
 
-/// Largest change of curvature when the end of a step from `begin` is turned rigidly, by the interpolation of `begin`'s
-/// point rotations with tangent-scaled increments, and by the local one.
+/// Largest change of curvature when the end of a step from `begin` is rotated rigidly: by the interpolation of
+/// tangent-scaled increments from `begin`, and by the local interpolation.
 struct CurvatureChange {
   double tangent_scaled = 0, local = 0;
 };
@@ -274,7 +275,7 @@ CurvatureChange turned_curvature(const Model& model, const State& begin, const S
   return out;
 }
 
-// The control: what the exact energy is paid for with. A rigid turn after the step changes STD's strains.
+// The price of STD's exact energy: a rigid rotation after the step changes its strains.
 TEST(EnergyOfStd, ItsStrainsAreNotInvariant) {
   Simulation simulation(tumbling_beam().scene, options("std", 0.05, 1e-10));
   run(simulation, 20);

@@ -1,4 +1,4 @@
-// A flexible arm with a hub under a position servo, in small motions, against a linear model of Euler-Bernoulli
+// Tests small motions of a flexible arm with a hub under a position servo, against a linear model of Euler-Bernoulli
 // elements.
 #include <array>
 #include <complex>
@@ -14,20 +14,20 @@ namespace {
 
 constexpr double kArmLength = 1, kArmBending = 10, kArmMass = 1, kHub = 0.05;  // m, N m^2, kg/m, kg m^2
 constexpr double kProportional = 40, kDerivative = 4;                          // N m/rad, N m s/rad
-// The motion is linear but for amplitude^2, the beam Euler's but for beta^2 EI / GA of a mode with the wave number
-// beta; beta < 8/m of those that move.
+// The motion is linear up to amplitude^2. The beam is Euler's up to beta^2 EI / GA of a mode with the wave number beta;
+// the moving modes have beta < 8/m.
 constexpr double kAmplitude = 1e-3, kArmShear = 1e8;  // rad, N
 constexpr double kModel = kAmplitude * kAmplitude + 64 * kArmBending / kArmShear;
 constexpr double kEnd = 0.8;  // s
-// The set point is amplitude (1 - 9/8 cos(6 t) + 1/8 cos(18 t)), whose first three derivatives start at zero: modes
-// that are not resolved in time do not count.
+// The set point is amplitude (1 - 9/8 cos(6 t) + 1/8 cos(18 t)). Its first three derivatives are zero at the start, so
+// that modes that are not resolved in time have no influence.
 struct Harmonic {
   double part, rate;
 };
 constexpr std::array<Harmonic, 2> kHarmonics{{{-9 / 8.0, 6}, {1 / 8.0, 18}}};
 
-/// Beam from a hinge at x = 0 to a free end, with cubic elements: unknowns are the slope there, then deflection and
-/// slope of each further node.
+/// A beam from a hinge at x = 0 to a free end, with cubic elements. Unknowns are the slope at the hinge, then
+/// deflection and slope of each further node.
 class LinearArm {
  public:
   explicit LinearArm(int elements)
@@ -49,11 +49,11 @@ class LinearArm {
     stiffness_(0, 0) += kProportional;
   }
 
-  /// Angle of the hub and deflection of the tip at a time after rest at 0.
+  /// Angle of the hub and deflection of the tip at a time, from rest at time 0.
   Eigen::Vector2d at(double time) const {
     using Complex = std::complex<double>;
     const int n = static_cast<int>(mass_.rows());
-    // What stays: the amplitude, turned as a rigid body, and the answer to the harmonics.
+    // The permanent part: the amplitude as a rigid rotation, and the response to the harmonics.
     Eigen::VectorXd stays(n), begin(n), begin_rate = Eigen::VectorXd::Zero(n);
     stays[0] = 1;
     for (int i = 1; i < n; i += 2) stays.segment<2>(i) << kArmLength * (i + 1) / (n - 1), 1;
@@ -70,7 +70,7 @@ class LinearArm {
       begin_rate += (rate * answer).real();
     }
 
-    // What dies away, by modes without the damper: states {omega q, q'}.
+    // The transient part, by modes of the undamped system, with the states {omega q, q'}.
     const SymmetricEigenpairs masses = symmetric_eigenpairs(mass_);
     const Eigen::MatrixXd of_unit_mass = masses.vectors * masses.values.cwiseSqrt().cwiseInverse().asDiagonal();
     const SymmetricEigenpairs modes = symmetric_eigenpairs(of_unit_mass.transpose() * stiffness_ * of_unit_mass);
@@ -116,9 +116,9 @@ TEST(ServoArm, FollowsTheLinearModelAtSecondOrder) {
     for (const int i : {0, 1}) {
       SCOPED_TRACE(fmt::format("{}, {}", scheme, i == 0 ? "hub" : "tip"));
       const double model = kModel * kAmplitude, error = std::abs(fine[i] - expected[i]);
-      // The order that is seen is off by what the models differ, beside the error.
+      // The tolerance of the observed order contains the difference of the models relative to the error.
       EXPECT_NEAR(std::log2((coarse[i] - expected[i]) / (fine[i] - expected[i])), 2, 0.05 + 1.5 * model / error);
-      // Extrapolated from both steps; a tenth of what that takes away is left at the fourth order at most.
+      // The value is extrapolated from both steps. At most a tenth of the correction remains at fourth order.
       EXPECT_NEAR(fine[i] + (fine[i] - coarse[i]) / 3, expected[i], model + 0.1 * error);
     }
   }

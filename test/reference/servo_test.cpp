@@ -1,4 +1,4 @@
-// Servos: continuous ones against closed formulas and a reference integration, sampled ones against the stability
+// Tests servos: continuous ones against closed forms and a reference integration, sampled ones against the stability
 // limits of their difference equations.
 #include <array>
 
@@ -20,7 +20,7 @@ scene::DriveDescription& add_drive(SceneBuilder& b, double rotor_inertia) {
   return b.drive(b.scene.joints.front().name, 10, rotor_inertia / 100);
 }
 
-// m q'' + kd q' + kp q = kp: a step of the set point.
+// Equation m q'' + kd q' + kp q = kp: a step of the set point.
 TEST(Servo, PositionRespondsAsTheSecondOrderSystem) {
   const double kp = 60, kd = 8, rotor = 1, mass = kBlockMass + rotor;
   const double decay = kd / (2 * mass), omega = std::sqrt(kp / mass - decay * decay), end = 0.8;
@@ -37,12 +37,12 @@ TEST(Servo, PositionRespondsAsTheSecondOrderSystem) {
       error[k] = std::abs(simulation.position(0) - expected);
     }
     EXPECT_LT(error[1], 1e-3) << scheme;
-    // Of second order at least: only the continuous mean of the composition is better.
+    // At least second order; only the composed scheme with its continuous mean is better.
     EXPECT_GT(observed_order(error[0], error[1]), 1.85) << scheme;
   }
 }
 
-// m v' = kp (w - v)
+// Equation m v' = kp (w - v).
 TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
   const double kp = 6, wanted = 1.5, end = 0.5;
   const double expected = wanted * (1 - std::exp(-kp / kBlockMass * end));
@@ -59,7 +59,7 @@ TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
     EXPECT_LT(error[1], 1e-3) << scheme;
     EXPECT_GT(observed_order(error[0], error[1]), 1.85) << scheme;
   }
-  // The integral takes a load away.
+  // With an integral, a load causes no permanent error.
   SceneBuilder b = block_on_rail();
   add_servo(b, ServoMode::Velocity, 20, 0, 60).set_point = TimeFunction(wanted);
   b.load("block", Vector3::Zero(), {-30, 0, 0});
@@ -69,19 +69,20 @@ TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
   EXPECT_NEAR(simulation.effort(0), 30, 1e-5);
 }
 
-/// exp(matrix t) start.
+/// Returns exp(matrix t) start.
 Eigen::Vector4d evolved(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& start, double t) {
   const auto [rates, vectors] = dense_eigenpairs(matrix);
   const Eigen::VectorXcd parts = complex_solution(vectors, start.cast<std::complex<double>>());
   return (vectors * (rates * t).array().exp().matrix().cwiseProduct(parts)).real();
 }
 
-// On the motor's side of an elastic gear, and on the link's, where the rotor is between it and what it controls.
+// The servo measures either the motor's or the link's side of an elastic gear. On the link's side, the rotor is between
+// the servo and the controlled coordinate.
 TEST(Servo, OnEitherSideOfAnElasticGear) {
   const double kp = 60, kd = 8, rotor = 0.5, gear = 400, damping = 1, end = 0.6;
   for (const bool on_link : {false, true})
     for (const char* scheme : {"em", "newmark"}) {  // dampers of joints are of first order in hht*
-      Eigen::Matrix4d matrix;                       // of {q, theta, q', theta'} less what is asked for
+      Eigen::Matrix4d matrix;                       // of {q, theta, q', theta'} relative to the set point
       const double on_q = on_link ? 1 : 0, on_theta = 1 - on_q;
       matrix << 0, 0, 1, 0,  //
           0, 0, 0, 1,        //
@@ -108,8 +109,8 @@ TEST(Servo, OnEitherSideOfAnElasticGear) {
     }
 }
 
-// An infinite gain is stiff, and what it is asked to do is done in some steps, for good. (Gains that the steps resolve
-// ring without a damping, as they do in time.)
+// A servo with a very large gain is stiff, and reaches its set point in a few steps without oscillation. (Without
+// damping, gains that the steps resolve oscillate, as in continuous time.)
 TEST(Servo, AnyGainIsStable) {
   for (const double kp : {1e8, 1e10, 1e12})
     for (const double kd : {0.0, 1e-3 * kp})
@@ -129,7 +130,8 @@ TEST(Servo, AnyGainIsStable) {
       }
 }
 
-/// By Runge and Kutta's rule in short steps: q'' = M/m, I' = e + (M - raw)/(ki T), M = raw = kp e - kd q' + ki I, cut.
+/// Reference by a Runge-Kutta method with short steps: q'' = M/m, I' = e + (M - raw)/(ki T), where M is raw = kp e - kd
+/// q' + ki I cut at the limit.
 double reference_position(double kp, double kd, double ki, double limit, double tracking, double end) {
   using State = Eigen::Vector3d;  // q, q', I
   const auto rate = [&](const State& s) {
@@ -170,9 +172,9 @@ TEST(Servo, SaturatesWithAndWithoutWindup) {
   EXPECT_GT(std::abs(position[0] - 1), 3 * std::abs(position[1] - 1)) << "wound up it is farther off";
 }
 
-// Of m v' = -K w, held over T, where w is the difference quotient of positions of the sample before: with x = K T/m the
-// roots of z^2 + (x/2 - 1) z + x/2 leave the unit circle at x = 2; with a delay of T those of z^3 - z^2 + x (z + 1)/2
-// at x = 2 (sqrt(2) - 1).
+// Equation m v' = -K w, held over T, where w is the difference quotient of positions at the last sample. With x = K
+// T/m, the roots of z^2 + (x/2 - 1) z + x/2 leave the unit circle at x = 2. With a delay of T, the roots of z^3 - z^2 +
+// x (z + 1)/2 leave it at x = 2 (sqrt(2) - 1).
 TEST(Servo, SampledHasTheStabilityLimitOfItsDifferenceEquation) {
   const double period = 0.004;
   for (const bool is_late : {false, true}) {
@@ -199,7 +201,7 @@ TEST(Servo, SampledHasTheStabilityLimitOfItsDifferenceEquation) {
   }
 }
 
-// A delay that is no multiple of the step splits it.
+// A delay that is no multiple of the step splits the step.
 TEST(Servo, SampledOutputsActAfterTheirDelay) {
   SceneBuilder b = block_on_rail();
   scene::ServoDescription& servo = add_servo(b, ServoMode::Effort, 0);
@@ -241,11 +243,12 @@ TEST(Servo, WorkIsInTheAccount) {
   }
 }
 
-// A trajectory that is a cubic is followed as the formula is: the set point and, where a scheme takes it, its rate.
+// A cubic trajectory gives the same motion as its formula: the set point and, if the scheme uses it, its rate.
 TEST(Servo, FollowsATrajectoryAsTheFormula) {
   const TimeFunction formula = TimeFunction::parse("t < 0 ? 0 : t*t*(3-2*t)");
   const TimeFunction trajectory = TimeFunction::spline({0, 0.3, 1}, {0, 0.216, 1}, {0, 1.26, 0});
-  // Derivatives of formulas are differences, which are exact to eps^(2/3); the error follows within kd / kp times that.
+  // Derivatives of formulas are differences with an error of eps^(2/3). The position error follows as kd / kp times
+  // that.
   const double tolerance = 4 * std::pow(std::numeric_limits<double>::epsilon(), 2.0 / 3.0);
   for (const char* scheme : {"em", "newmark"})
     for (const double sample_time : {0.0, 0.004}) {
@@ -283,7 +286,7 @@ TEST(Servo, TakesCommands) {
   EXPECT_THROW(without.command_set_point(0, 1), std::invalid_argument);
 }
 
-// Off, nothing pushes the block, whatever is commanded; on again, the integral is empty.
+// While the servo is off, its motor gives no effort for any command. When it is on again, its integral is empty.
 TEST(Servo, SwitchedOffItsMotorGivesNothing) {
   const double kp = 400, kd = 30, ki = 5000, step = 1e-3;
   for (const char* scheme : {"em", "newmark"})
@@ -295,7 +298,7 @@ TEST(Servo, SwitchedOffItsMotorGivesNothing) {
       Simulation simulation(b.scene, options(scheme, step));
       simulation.switch_servo(0, false);
       simulation.command_effort(0, 3);
-      run(simulation, 10);  // in the first one Newmark's rule still has the acceleration of the start
+      run(simulation, 10);  // in the first step, Newmark's rule still has the acceleration of the start
       const double begin = simulation.position(0), velocity = simulation.velocity(0);
       run(simulation, 990, [&] { ASSERT_EQ(simulation.effort(0), 0); });
       EXPECT_NEAR(simulation.position(0), begin + 990 * step * velocity, 1e-10) << scheme;
@@ -304,7 +307,7 @@ TEST(Servo, SwitchedOffItsMotorGivesNothing) {
       simulation.release_command(0);
       simulation.switch_servo(0, true);
       run(simulation, 12);
-      // kp e - kd v, what the integral has of 12 steps, and what the block has moved and gained in them.
+      // kp e - kd v, plus the integral over 12 steps, and the changes of position and velocity in them.
       const double error = 1 - begin - 990 * step * velocity;
       EXPECT_NEAR(simulation.effort(0), kp * error - kd * velocity, 12 * step * (ki * error + kp * 1 + kd * 100))
           << scheme << sample_time;

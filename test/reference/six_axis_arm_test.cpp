@@ -1,4 +1,5 @@
-// A whole robot: the six-axis arm of config/examples, with a flexible forearm, elastic gears and servos that integrate.
+// Tests a whole robot: the six-axis arm of config/examples, with a flexible forearm, elastic gears and servos with
+// integrals.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,7 +12,7 @@ namespace flexarm::test {
 namespace {
 
 constexpr int kAxes = 6;
-constexpr double kSecond = 1000;  // steps
+constexpr double kSecond = 1000;  // steps per second
 
 class SixAxisArm : public testing::Test {
  protected:
@@ -33,7 +34,7 @@ TEST_F(SixAxisArm, IsReadAndStartsWithoutAnyFinding) {
   EXPECT_TRUE(Simulation(*read_.scene).start_warnings().empty());
 }
 
-// The motors stand at their set points, the links behind gears that are twisted by what they carry.
+// The motors are at their set points. The links are behind gears that are twisted by their loads.
 TEST_F(SixAxisArm, HoldsItsPoseUnderGravity) {
   ASSERT_TRUE(read_.scene);
   Simulation simulation(*read_.scene);
@@ -48,8 +49,8 @@ TEST_F(SixAxisArm, HoldsItsPoseUnderGravity) {
   EXPECT_LT(simulation.effort(1), -30) << "axis 2 carries some 15 kg before it";
 }
 
-// Stiff links that move slowly leave a multiplier of nothing but round-off to em: iterations end there, with kept
-// factors, too. Guesses are right to round-off already, and two or three updates show that they do not shrink.
+// In slowly moving stiff links, em's multiplier is only round-off. Iterations must end there, also with kept factors.
+// Predictions are already right to round-off, and two or three updates show that updates do not decrease.
 TEST_F(SixAxisArm, RoundOffCostsNoIterations) {
   ASSERT_TRUE(read_.scene);
   for (const char* scheme : {"em", "em0", "edmc2"}) {
@@ -81,8 +82,8 @@ TEST_F(SixAxisArm, FollowsItsTrajectoryAndClosesItsEnergyAccount) {
     imbalance = std::max(imbalance, std::abs(energy_account(simulation) - account));
   });
   for (int i = 0; i < kAxes; ++i) {
-    // The movement is slow beside the servos: kp and gear are springs in a row, one for what has changed since the
-    // start, the other for all that is transmitted.
+    // The motion is slow compared with the servos. kp and the gear act as springs in series: kp for the change of the
+    // effort since the start, the gear for the whole transmitted effort.
     const double bound = change[i] / read_.scene->servos[i].kp + effort[i] / *read_.scene->drives[i].stiffness;
     EXPECT_LT(error[i], bound) << i;
     EXPECT_GT(std::abs(set_point(i, 5) - set_point(i, 0)), 100 * bound) << i << ": it has moved";

@@ -1,4 +1,4 @@
-// Sliders that leave their line: nothing jumps, and what flies on flies as a free body.
+// Tests sliders that leave their line: no quantity jumps, and the slider continues as a free body.
 #include <cmath>
 #include <filesystem>
 
@@ -11,7 +11,7 @@ namespace {
 
 using scene::JointKind;
 
-/// An arm with a body slides along a free beam and over its end; no loads.
+/// An arm with a body slides along a free beam and over its end, without loads.
 SceneBuilder leaving(JointKind rotation) {
   SceneBuilder b;
   b.beam("line", {{2, 0.3, 0.2}}, soft_section(), 4, 2);
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Rotations, LeavingSlide,
                          ::testing::Values(JointKind::Fixed, JointKind::Revolute, JointKind::Universal,
                                            JointKind::Spherical, JointKind::Screw));
 
-// A bead leaves a stiff inclined line with v = sqrt(2 g sin l) along it and then falls freely.
+// A bead leaves a stiff inclined line with v = sqrt(2 g sin l) along it, and then falls freely.
 TEST(SlideEnd, FallsOnAParabola) {
   SceneBuilder b;
   b.beam("line", {{0.6, 0, -0.8}}, scene::DirectSection{1e9, 1e9, 1e9, 1e9, 1e9, 1e9, 1, 0.1, 0.1, 0.1}, 4, 2);
@@ -73,7 +73,8 @@ TEST(SlideEnd, FallsOnAParabola) {
   test::run(simulation, 400);
   const double flown = simulation.time() - left;
   const Vector3 expected = Vector3(0.6, 0, -0.8) * (1 + speed * flown) + Vector3(0, 0, -5 * flown * flown);
-  // It leaves at the end of a step, until when the line still carries it: less than a step's share of the acceleration.
+  // The bead leaves at the end of a step, and the line carries it until then. The error is less than a step's share of
+  // the acceleration.
   const double late = 0.002 * 10 * 0.6 * flown;
   EXPECT_LT((simulation.probe(0).pose.position - expected).norm(), late + 1e-6);
   EXPECT_FALSE(simulation.is_commandable(0));

@@ -1,4 +1,4 @@
-// Lines over several links: welded beams are one line, kinks end it.
+// Tests lines over several links: welded beams are one line, which a kink ends.
 #include "building/model_builder.h"
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
@@ -8,8 +8,8 @@ namespace {
 
 using scene::JointKind;
 
-/// A line of 4 m in `links` welded beams with eight elements altogether; an arm with a body slides on the second half's
-/// first link from 2.2 m, at `speed`.
+/// A line of 4 m in `links` welded beams with eight elements in all. An arm with a body slides from 2.2 m, on the first
+/// link of the second half, with `speed`.
 SceneBuilder welded(int links, double speed) {
   SceneBuilder b;
   const double length = 4.0 / links;
@@ -38,10 +38,10 @@ double place(const Simulation& simulation) {
   return simulation.position(*simulation.find_coordinate("run/s")) - model_of(simulation).slide_lines[0].begin();
 }
 
-// The same mesh in one link, in two and in four; past welds in both directions. A plain line in two links, none of
-// whose nodes at the weld is active, is the same but for round-off, which grows with the square of the steps. Elsewhere
-// SM-EM spreads what the section turns beyond its nodes (joints.md 4.5) over one more node: that must be nothing
-// against the lines' own error, by which a smooth line differs from a plain one.
+// The same mesh in one, two and four links, with travel past welds in both directions. A plain line in two links, whose
+// nodes at the weld are never active, gives the same results up to round-off, which grows with the square of the steps.
+// Otherwise SM-EM distributes the rotation of the section beyond its nodes (joints.md 4.5) over one more node. This
+// difference must be small against the error of the lines, by which a smooth line differs from a plain one.
 TEST(SlideLine, WeldedBeamsAreOneLine) {
   for (const bool smooth : {false, true})
     for (const double speed : {-2.0, 2.0}) {
@@ -88,7 +88,7 @@ TEST(SlideLine, EndsAtKinksAndAtTurnedSections) {
   ASSERT_EQ(weld.name, "weld3");
   weld.origin.orientation = so3::exp_quaternion(Vector3(0, 0, 0.01));  // a kink
   EXPECT_NEAR(line().end(), 1, 1e-15);
-  weld.origin.orientation = so3::exp_quaternion(Vector3(0.01, 0, 0));  // about the line itself
+  weld.origin.orientation = so3::exp_quaternion(Vector3(0.01, 0, 0));  // rotation about the line itself
   EXPECT_NEAR(line().end(), 1, 1e-15);
   weld.origin.orientation = Quaternion::Identity();
   weld.origin.position.y() = 0.01;  // attached to the nearest section, beside it

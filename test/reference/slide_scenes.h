@@ -18,7 +18,7 @@ inline std::string first_coordinate(scene::JointKind rotation) {
   return rotation == scene::JointKind::Fixed ? "run" : "run/s";
 }
 
-/// What moves of itself: the angle of a joint with dependent travel, else the arc length.
+/// Name of the independent coordinate: the angle of a joint with dependent travel, otherwise the arc length.
 inline std::string free_coordinate(scene::JointKind rotation) {
   return scene::has_dependent_travel(rotation) ? "run/1" : first_coordinate(rotation);
 }
@@ -34,7 +34,7 @@ inline SceneBuilder runner_on_a_free_beam(scene::JointKind rotation) {
   scene::JointDescription& run = add_slide(b, "run", "line", "arm", 1.3, rotation);
   run.ratio = 0.4;
   run.offset = 0.1;
-  if (rotation == JointKind::Cam)  // its followers pass three borders of elements back and forth
+  if (rotation == JointKind::Cam)  // the profile moves it over three borders of elements and back
     run.profile = std::make_shared<CamProfile>(CamProfile::periodic({0, 1, 2.4, 4.1, 5}, {0, 0.6, 1.5, 1.2, 0.2}));
   if (rotation != JointKind::Spherical) run.slide->offset = {0.05, 0.1, -0.1};
   b.joint("wrist", JointKind::Fixed, "arm", "hand", {0, 0.8, 0.3});
@@ -47,7 +47,8 @@ inline SceneBuilder runner_on_a_free_beam(scene::JointKind rotation) {
 /// Length of the line of the thesis's example 12.2 [m]. [Muñoz 2004]
 const double kThesisLineLength = std::sqrt(10.0);
 
-/// Thesis 12.2, a mass on a beam that slides on another one, in the reading of thesis_examples.md.
+/// Thesis 12.2: a mass on a beam that slides on another beam, interpreted as in
+/// config/thesis/12_2_free_sliding_mass.urdf.
 inline Simulation thesis_free_sliding_mass(const std::string& scheme, double step,
                                            const scene::SlideDescription& slide) {
   using scene::JointKind;
@@ -63,7 +64,7 @@ inline Simulation thesis_free_sliding_mass(const std::string& scheme, double ste
   run.slide->smooth = slide.smooth;
   b.joint("tip", JointKind::Fixed, "BM", "M", {1, 0, 0});
   b.scene.joints[1].origin.orientation = Quaternion::Identity();
-  // All of BM but its sliding end has the velocity.
+  // The whole beam BM except its sliding end has the velocity.
   initial_field(b, "BM", {0, -10, -10}, Vector3::Zero());
   b.scene.initial_joints.push_back({"run/s", kThesisLineLength, 0, {}, true});
   return Simulation(b.scene, options(scheme, step, 1e-10));

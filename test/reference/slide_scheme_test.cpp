@@ -1,4 +1,5 @@
-// The thesis's algorithms for sliders: what each of them keeps, on a runner in free flight and in the example 12.2.
+// Tests the thesis's algorithms for sliders: which conditions and quantities each of them keeps, on a slider in free
+// flight and in the example 12.2.
 #include <cstdio>
 
 #include "building/model_builder.h"
@@ -11,7 +12,7 @@ namespace {
 
 using scene::JointKind;
 
-/// The integration scheme that a slide scheme belongs to.
+/// The integration scheme to which a slide scheme belongs.
 std::string owner(const std::string& slide) {
   return slide == "sme" ? "std" : slide == "alg2" ? "m2" : "m1";
 }
@@ -23,14 +24,14 @@ Simulation runner(const std::string& slide, JointKind rotation, double step, boo
   return Simulation(b.scene, options(owner(slide), step, 1e-11));
 }
 
-/// What is known of a slider before and after a step.
+/// The configuration of a slider before and after a step.
 struct Contact {
   explicit Contact(const Simulation& simulation) : simulation_(simulation) {
     const Model& model = model_of(simulation);
     for (joint_ = 0; model.joints[joint_].kind != JointMapKind::Slide;) ++joint_;
     observe();
   }
-  /// Takes what was after the last step as what is before the next one.
+  /// Makes the configuration after the last step the one before the next step.
   void observe() {
     before_ = poses_;
     slave_before_ = slave_;
@@ -45,7 +46,7 @@ struct Contact {
   bool crossed() const { return line().piece_at(from_) != line().piece_at(to_); }
   /// Distance of the slave from the line at the end of the step [m].
   double at_end() const { return (slave_ - slide_pose(line(), poses_, to_).position).norm(); }
-  /// Distance in the middle, with the mean of the weights at both ends, or with those of the end.
+  /// Distance in the middle of the step, with the mean weights of both ends, or with the weights of the end.
   double in_middle(bool weights_of_end) const {
     const auto place = [&](double x) {
       return Vector3(0.5 * (slide_pose(line(), before_, x).position + slide_pose(line(), poses_, x).position));
@@ -66,7 +67,7 @@ class SlideSchemes : public ::testing::TestWithParam<JointKind> {};
 INSTANTIATE_TEST_SUITE_P(Rotations, SlideSchemes,
                          ::testing::Values(JointKind::Fixed, JointKind::Revolute, JointKind::Spherical));
 
-// joints.md 4.4, last column but one: the contact, at each step where the algorithm claims it.
+// joints.md 4.4, last column but one: the contact condition, at the instant at which the algorithm claims it.
 TEST_P(SlideSchemes, HoldTheirContactConditions) {
   for (const char* slide : {"alg1", "alg2", "alg3", "alg4", "sme"})
     for (const bool smooth : {false, true}) {
@@ -77,10 +78,10 @@ TEST_P(SlideSchemes, HoldTheirContactConditions) {
       for (int i = 0; i < 120; ++i) {
         const int level = state_of(simulation).halving_level;
         const StepResult result = simulation.step();
-        if (!result.converged && name == "alg4") break;  // as in the thesis: its transitions excite the line
+        if (!result.converged && name == "alg4") break;  // as in the thesis, its transitions excite the line
         ASSERT_TRUE(result.converged) << slide;
         contact.observe();
-        if (result.halvings > 0 || level > 0) continue;  // it was several steps
+        if (result.halvings > 0 || level > 0) continue;  // the step consists of several sub-steps
         const bool crossed = contact.crossed();
         crossings += crossed;
         const bool in_middle = name == "alg4" || (name == "alg1" && !crossed);
@@ -90,7 +91,7 @@ TEST_P(SlideSchemes, HoldTheirContactConditions) {
     }
 }
 
-/// Largest change of the momentum and the angular momentum within the steps that the filter takes.
+/// Largest change of momentum and angular momentum within the steps that the filter accepts.
 template <class Filter>
 Vector3 momentum_jumps(Simulation& simulation, int steps, const Filter& filter) {
   Contact contact(simulation);
@@ -129,9 +130,10 @@ TEST_P(SlideSchemes, KeepMomenta) {
   }
 }
 
-// e x g_f of the table: of third order in each step.
+// The loss e x g_f of the table is of third order in each step.
 TEST_P(SlideSchemes, Alg3LosesAngularMomentumInThirdOrder) {
-  Simulation start = runner("alg3", GetParam(), 2e-3);  // until it is bent, far from its elements' borders
+  // Starts until the line is bent, far from the borders of its elements
+  Simulation start = runner("alg3", GetParam(), 2e-3);
   run(start, 20);
   const auto jump = [&](double step) {
     Simulation simulation = runner("alg3", GetParam(), step);
@@ -157,7 +159,7 @@ TEST(SlideScheme, EnergyOfSmeIsExact) {
 
 // ---------------------------------------------------------------- smooth lines
 
-/// A bead hangs on a clamped cable that sags under its weight: it slides to the lowest place.
+/// A bead on a clamped cable that sags under its weight. The bead slides to the lowest point.
 SceneBuilder cable(bool smooth, int elements) {
   SceneBuilder b;
   b.beam("line", {{2, 0, 0}}, soft_section(), elements, 2);
@@ -169,8 +171,8 @@ SceneBuilder cable(bool smooth, int elements) {
   return b;
 }
 
-// Statics of a bead held at a place that is on a border: there both lines are one, and so are their deflections;
-// elsewhere they differ by the elements' error.
+// Statics of a bead that is held at a border of elements. There, plain and smooth lines are identical, and so are their
+// deflections. Elsewhere they differ by the elements' error.
 TEST(SmoothLine, StaticsAgreesWithTheElementsAtNodes) {
   const auto deflection = [](bool smooth, double place) {
     SceneBuilder b = cable(smooth, 4);
@@ -185,7 +187,7 @@ TEST(SmoothLine, StaticsAgreesWithTheElementsAtNodes) {
   EXPECT_LT(difference, 1e-2);
 }
 
-// A load that grows gently makes the bead pass a border of the line: both families converge in second order, to one
+// A smoothly growing load moves the bead over a border of the line. Both schemes converge with second order to the same
 // path.
 TEST(SmoothLine, NewmarkAndM1ConvergeToOnePath) {
   const auto place = [](const char* scheme, double step) {
@@ -212,11 +214,11 @@ TEST(SmoothLine, NewmarkAndM1ConvergeToOnePath) {
 
 struct Flight {
   double energy = 0, angular = 0;  ///< largest |E/E_0 - 1| and |L - L_0|
-  double arrival = 0;              ///< when the slider reached the end; 0: not
-  double end = 0;                  ///< of the last converged step [s]
+  double arrival = 0;              ///< time at which the slider reached the end; 0: not reached
+  double end = 0;                  ///< time of the last converged step [s]
   double transitions[3] = {};      ///< first arrival in the third, second, and first element
   int halvings = 0;
-  double energy_before = 0;  ///< the largest before the first transition
+  double energy_before = 0;  ///< largest before the first transition
 };
 
 Flight thesis_run(const std::string& slide, const std::string& scheme, double step, bool smooth, double until) {
@@ -250,7 +252,8 @@ Flight thesis_run(const std::string& slide, const std::string& scheme, double st
   return out;
 }
 
-// The figures of thesis_examples.md, "Here": a program of its own. Times to a step; sizes of errors to a factor of two.
+// The expected figures come from an independent program. Times must agree to within a step, and errors to within a
+// factor of two.
 TEST(SlideScheme, ThesisAlg3ArrivesOnTheLine) {
   const Flight flight = thesis_run("alg3", "m1", 0.004, false, 0.5);
   EXPECT_NEAR(flight.arrival, 0.432, 0.004);
@@ -280,7 +283,7 @@ TEST(SlideScheme, ThesisAlg2DissipatesAndArrives) {
   EXPECT_LT(flight.energy, 5e-2);
 }
 
-// Its transitions leave the mid-point contact for the end-point one with whatever the slave is off the line.
+// At its transitions, it changes from mid-point to end-point contact. The slave's distance from the line then jumps.
 TEST(SlideScheme, ThesisAlg1PassesTransitionsWithJumps) {
   const Flight flight = thesis_run("alg1", "m1", 0.002, false, 0.24);
   EXPECT_NEAR(flight.transitions[1], 0.158, 0.002);
@@ -295,7 +298,7 @@ TEST(SlideScheme, ThesisSmoothLine) {
   EXPECT_LT(flight.angular, 1e-11);
 }
 
-// ---------------------------------------------------------------- what goes with what
+// ---------------------------------------------------------------- combinations of schemes
 
 TEST(SlideScheme, BelongsToAnIntegrationScheme) {
   SceneBuilder b = runner_on_a_free_beam(JointKind::Fixed);
@@ -311,7 +314,7 @@ TEST(SlideScheme, BelongsToAnIntegrationScheme) {
         << what;
   }
   EXPECT_NO_THROW(Simulation(b.scene, options("m1", 0.01)));
-  // The Newmark family has its own form, the same as without.
+  // The Newmark family has its own form: the option has no effect.
   Simulation plain(runner_on_a_free_beam(JointKind::Fixed).scene, options("newmark", 0.01)),
       same(b.scene, options("newmark", 0.01));
   run(plain, 5);

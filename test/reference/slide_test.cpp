@@ -1,4 +1,5 @@
-// Sliding on a flexible line: invariants across the borders of elements, closed forms, and the thesis's example 12.2.
+// Tests sliding on a flexible line: invariants across the borders of elements, closed forms, and the thesis's example
+// 12.2.
 #include <cmath>
 #include <cstdio>
 
@@ -9,10 +10,10 @@ namespace {
 
 using scene::JointKind;
 
-/// The runner's rotation, and whether its line is smooth.
+/// Parameters: the slider's kind of rotation, and whether its line is smooth.
 class FreeSlide : public ::testing::TestWithParam<std::tuple<JointKind, bool>> {};
 
-// 4 s: the runner passes most of the line and its end's stop throws it back.
+// In 4 s the slider passes most of the line, and the stop at the end throws it back.
 TEST_P(FreeSlide, ConservesEnergyAndMomentaAcrossElements) {
   const auto [rotation, smooth] = GetParam();
   SceneBuilder b = runner_on_a_free_beam(rotation);
@@ -43,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Rotations, FreeSlide,
                                                               JointKind::Worm, JointKind::Cam),
                                             ::testing::Bool()));
 
-// The arc length follows the angle at every step, to round-off, in every family of schemes.
+// The arc length follows the angle in every step to round-off, in every family of schemes.
 TEST(Slide, CoupledTravelFollowsItsAngle) {
   for (const JointKind kind : {JointKind::Screw, JointKind::RackAndPinion, JointKind::Worm, JointKind::Cam})
     for (const char* scheme : {"em", "m1", "m2", "newmark", "hht2"}) {
@@ -74,12 +75,12 @@ TEST(Slide, BeadFallsDownAnInclinedLine) {
   b.scene.gravity = {0, 0, -10};
   Simulation simulation(b.scene, options("em", 0.005));
   run(simulation, 100);
-  // The line bends by 1e-8 m; what remains is the step's round-off.
+  // The line bends by 1e-8 m; the remaining error is round-off.
   EXPECT_NEAR(simulation.position(0), 0.2 + 0.5 * 8 * 0.25, 1e-6);
   EXPECT_NEAR(simulation.velocity(0), 8 * 0.5, 1e-4);
 }
 
-/// A wheel of inertia 0.3 about the line's tangent, as nut of a screw of 0.4 m/rad on a stiff vertical line.
+/// A wheel of inertia 0.3 about the line's tangent, as the nut of a screw of 0.4 m/rad on a stiff vertical line.
 TEST(Slide, ScrewUnderItsWeight) {
   SceneBuilder b = bead({0, 0, -1});
   b.scene.links.back().inertial = scene::RigidInertia{2, Vector3::Zero(), 0.3 * Matrix3::Identity()};
@@ -91,7 +92,8 @@ TEST(Slide, ScrewUnderItsWeight) {
   Simulation simulation(b.scene, options("em", 0.005, 1e-12));
   run(simulation, 80);
   const double acceleration = 2 * 10 * 0.4 / (0.3 + 2 * 0.4 * 0.4);
-  const double turned = 0.005 * acceleration * 0.4;  // in a step: the tangent-scaled rule's error is in its square
+  // Rotation of the nut in a step. The error of the tangent-scaled rule is of second order in this angle.
+  const double turned = 0.005 * acceleration * 0.4;
   EXPECT_NEAR(simulation.position(1), 0.5 * acceleration * 0.16, 0.08 * acceleration * turned * turned + 1e-6);
 }
 
@@ -108,7 +110,7 @@ TEST(Slide, EndsAreStopsWithRestitution) {
   EXPECT_LT(most, 2.03);
   EXPECT_NEAR(rebound, -0.3 * std::sqrt(2 * 8 * 1.8), 0.3);  // coefficient of restitution 0.3
   const Energies e = simulation.energies();
-  // What Newton leaves, 1e-15 m times EA over an element, does work on 0.01 m in each of 1000 steps.
+  // The error of Newton's method, 1e-15 m times EA over an element, does work over 0.01 m in each of 1000 steps.
   EXPECT_NEAR(e.total() + e.dissipated, start, 1000 * 1e-15 * 3e9 * 0.01);
 }
 
@@ -126,7 +128,7 @@ TEST(Slide, AnErrorEndFailsAndKeepsTheState) {
   EXPECT_TRUE(std::isfinite(simulation.position(0)));
 }
 
-// The drive of an angle on which the travel depends does the work that the energy changes by.
+// The angle of a joint with dependent travel is driven. The drive's work equals the change of energy.
 TEST(Slide, CoupledTravelIsDrivenByItsAngle) {
   for (const JointKind kind : {JointKind::Screw, JointKind::RackAndPinion, JointKind::Worm, JointKind::Cam}) {
     SceneBuilder b = runner_on_a_free_beam(kind);
@@ -142,7 +144,7 @@ TEST(Slide, CoupledTravelIsDrivenByItsAngle) {
   }
 }
 
-// Back and forth over fifty borders and more, driven; the drive's work is what the energy changes by.
+// A drive moves the slider back and forth over more than fifty borders. Its work equals the change of energy.
 TEST(Slide, BackAndForthOverManyElements) {
   SceneBuilder b;
   b.beam("line", {{3, 0, 0}}, soft_section(), 12, 2);
@@ -166,7 +168,8 @@ TEST(Slide, BackAndForthOverManyElements) {
   std::printf("%d borders, defect of the energy balance %.1e\n", crossings, drift.energy());
 }
 
-// Thesis 12.2 in the reading of thesis_examples.md, whose figures come from a program of its own.
+// Thesis 12.2, interpreted as in config/thesis/12_2_free_sliding_mass.urdf. The figures come from an independent
+// program.
 TEST(Slide, ThesisFreeSlidingMass) {
   scene::SlideDescription slide;
   slide.smooth = false;  // as in that program

@@ -1,5 +1,5 @@
 #pragma once
-/// A loop of rigid links with one freedom: its scene, and its exact motion.
+/// A loop of rigid links with one degree of freedom: its scene and its exact motion.
 
 #include <cmath>
 #include <string>
@@ -16,7 +16,7 @@ constexpr double kCrankInertia = 0.01 + 1 * 0.1 * 0.1;                // about t
 constexpr double kRodMass = 0.8, kRodCentre = 0.25, kRodTurn = 0.02;  // kg, m, kg m^2 about the centre
 constexpr double kSlider = 1.5, kAngle = 0.7;                         // kg, rad
 
-/// A crank that moves a slider by a rod; the pin between these two closes the loop.
+/// A crank that moves a slider by a rod. The pin between rod and slider closes the loop.
 inline SceneBuilder slider_crank(const std::string& scheme = "auto") {
   SceneBuilder b;
   b.scene.integrator = with_scheme(b.scene.integrator, scheme);
@@ -42,7 +42,7 @@ inline SceneBuilder slider_crank(const std::string& scheme = "auto") {
   return b;
 }
 
-/// Where the rod and its centre are, and their first two derivatives by the crank's angle a:
+/// Positions of the rod and its centre, with their first two derivatives with respect to the crank's angle a:
 ///   kCrank sin a + kRod sin p = 0.
 struct SliderCrank {
   double p, p1, p2;
@@ -51,7 +51,7 @@ struct SliderCrank {
     p1 = -kCrank * std::cos(a) / (kRod * std::cos(p));
     p2 = (kCrank * std::sin(a) + kRod * std::sin(p) * p1 * p1) / (kRod * std::cos(p));
   }
-  /// Of the rod's point so far from the crank's pin.
+  /// Position of the rod's point at the distance c from the crank's pin.
   Eigen::Vector2d point(double c) const {
     return {kCrank * std::cos(a) + c * std::cos(p), kCrank * std::sin(a) + c * std::sin(p)};
   }
@@ -66,7 +66,7 @@ struct SliderCrank {
   double a;
 };
 
-/// {a, a'} by M(a) a'' + M'(a) a'^2 / 2 = torque - dV/da, under `gravity` against y [m/s^2].
+/// Returns d/dt {a, a'} from M(a) a'' + M'(a) a'^2 / 2 = torque - dV/da, with `gravity` in the direction -y [m/s^2].
 inline Eigen::VectorXd crank_rates(const Eigen::VectorXd& y, double torque, double gravity = 0) {
   const SliderCrank s(y[0]);
   const Eigen::Vector2d centre = s.first(kRodCentre), pin = s.first(kRod);

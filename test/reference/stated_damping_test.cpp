@@ -1,5 +1,5 @@
-// Damping of single strains of a beam, and of joints by their ratio. (By the ratio of a beam's modes:
-// modes_wedge_test.)
+// Tests damping of single strains of a beam, and damping of joints by a damping ratio. (modes_wedge_test tests damping
+// ratios of a beam's modes.)
 #include <array>
 
 #include "math/pi.h"
@@ -11,7 +11,7 @@ namespace {
 
 // ---------------------------------------------------------------- strains
 
-/// A clamped beam along x whose strains have frequencies of their own.
+/// A clamped beam along x. Its strains have different frequencies.
 SceneBuilder cantilever(const scene::DirectSection& section, double viscosity = 0,
                         const Vector6& shares = Vector6::Ones()) {
   SceneBuilder b;
@@ -23,12 +23,13 @@ SceneBuilder cantilever(const scene::DirectSection& section, double viscosity = 
   return b;
 }
 
-/// Rigid in shear to 1e-7 of the energy, and with rotary inertia to match.
+/// A section that is rigid in shear to 1e-7 of the energy, with small rotary inertia.
 constexpr scene::DirectSection kSlender{4e3, 1e8, 1e8, 6, 8, 12, 1, 0.01, 1e-7, 1e-7};
-/// Rigid in bending to 1e-7 of the energy.
+/// A section that is rigid in bending to 1e-7 of the energy.
 constexpr scene::DirectSection kShearing{1e5, 8, 12, 1e3, 1e8, 1e8, 1, 0.01, 1e-3, 1e-3};
 
-/// The slowest mode that moves the tip mainly in this component of {displacement, spin}; bending turns it as well.
+/// The slowest mode that moves the tip mainly in this component of {displacement, spin}. Bending rotates the tip as
+/// well.
 Mode slowest(const SceneBuilder& b, int component) {
   const Simulation simulation(b.scene);
   for (const Mode& mode : simulation.natural_modes(12)) {
@@ -39,7 +40,8 @@ Mode slowest(const SceneBuilder& b, int component) {
   return {};
 }
 
-// A mode of one strain alone is damped by eta omega / 2 of that strain, and by no other.
+// A mode with a single strain has the damping ratio eta omega / 2 of this strain. Damping of other strains has no
+// effect on it.
 TEST(DampingOfStrains, RatiosOfModes) {
   struct Case {
     Strain strain;
@@ -60,7 +62,7 @@ TEST(DampingOfStrains, RatiosOfModes) {
   }
 }
 
-/// Deflections of the tip in y and z, released from under a load, whose moment twists as well.
+/// Positions of the tip after the release from a load. The load's moment twists the beam as well.
 std::vector<Vector3> released(const std::string& scheme, double viscosity, const Vector6& shares) {
   SceneBuilder b = cantilever(kSlender, viscosity, shares);
   b.load("rod", {1, 0, 0}, {0, 0.02, 0.03}, Vector3::Zero(), "t > 0 ? 0 : 1");
@@ -71,14 +73,14 @@ std::vector<Vector3> released(const std::string& scheme, double viscosity, const
   return tips;
 }
 
-// In every family of schemes: bending about y is damped as if all strains were, bending about z not at all.
+// In every family of schemes: bending about y is damped as if all strains were damped, bending about z not at all.
 TEST(DampingOfStrains, ActsOnItsStrainAloneInEveryScheme) {
   Vector6 shares = Vector6::Zero();
   shares[kBendingY] = 1;
   for (const char* scheme : {"em", "em0", "edmc2", "em4", "m1", "std", "beta1", "newmark", "hht1", "hht3"}) {
     const std::vector<Vector3> one = released(scheme, 0.02, shares), all = released(scheme, 0.02, Vector6::Ones()),
                                none = released(scheme, 0, Vector6::Ones());
-    const double deflection = 0.03 / (3 * 8);  // at the start; squares of it couple the planes
+    const double deflection = 0.03 / (3 * 8);  // at the start; the planes are coupled by its square
     double damped = 0;
     for (std::size_t n = 0; n < one.size(); ++n) {
       ASSERT_NEAR(one[n].z(), all[n].z(), 1e-4 * deflection) << scheme << n;
@@ -89,11 +91,11 @@ TEST(DampingOfStrains, ActsOnItsStrainAloneInEveryScheme) {
   }
 }
 
-// Strong damping of one strain leaves nothing to ring: the deflection creeps back and never swings through.
+// With strong damping of one strain, the deflection creeps back without oscillation.
 TEST(DampingOfStrains, StrongDampingCreeps) {
   Vector6 shares = Vector6::Zero();
   shares[kBendingY] = 1;
-  const double eta = 10;  // [s]; omega is 10/s, so that the fast root is 1000/s, and the slow one 1/eta to 1e-4
+  const double eta = 10;  // [s]; omega is 10/s. So the fast root is 1000/s, and the slow one 1/eta to 1e-4
   for (const char* scheme : {"em", "edmc2"}) {
     const std::vector<Vector3> tips = released(scheme, eta, shares);
     for (std::size_t n = 1; n < tips.size(); ++n)
@@ -113,7 +115,7 @@ TEST(DampingOfJoints, RatioOnASpring) {
     const double omega = std::sqrt(40 / kWheelInertia), damped = omega * std::sqrt(1 - ratio * ratio);
     const std::vector<Mode> modes = Simulation(b.scene).natural_modes(1);
     EXPECT_NEAR(modes[0].damping_ratio(), ratio, 1e-4 * ratio);
-    // Over one period, in steps of which the errors are (omega h)^2 / 12 times the phase.
+    // Over one period. The phase error of a step is (omega h)^2 / 12 times the phase.
     const double period = 2 * kPi / damped;
     const int steps = 2000;
     Simulation simulation(b.scene, options("em", period / steps, 1e-12));
@@ -123,7 +125,7 @@ TEST(DampingOfJoints, RatioOnASpring) {
   }
 }
 
-/// Two links of length 1 in line, a mass at the end of each, hinges about z.
+/// Two links of length 1 in line, with a mass at the end of each, and hinges about z.
 SceneBuilder two_links() {
   SceneBuilder b;
   b.body("upper", 2, {1, 0, 0}, Matrix3::Zero());
@@ -137,7 +139,7 @@ double damper(const Simulation& simulation) {
   return model_of(simulation).actuators.front().spring->elasticity.damping;
 }
 
-// The mass matrix of both is {{2 + 12 + 0.5, 6 + 0.5}, {6 + 0.5, 3 + 0.5}}.
+// The mass matrix is {{2 + 12 + 0.5, 6 + 0.5}, {6 + 0.5, 3 + 0.5}}.
 TEST(DampingOfJoints, TakesTheArticulatedInertia) {
   const double k = 10, ratio = 0.1;
   for (const bool is_driven : {false, true}) {
@@ -159,7 +161,7 @@ TEST(DampingOfJoints, TakesTheArticulatedInertia) {
 
 TEST(DampingOfJoints, RatioOnAnElasticGear) {
   SceneBuilder b = wheel_on_shaft();
-  scene::DriveDescription& drive = b.drive("shaft", 1, 1e9);  // its rotor is held
+  scene::DriveDescription& drive = b.drive("shaft", 1, 1e9);  // so large that the rotor is practically held
   drive.stiffness = 500;
   drive.damping_ratio = 0.05;
   for (const Mode& mode : Simulation(b.scene).natural_modes(2))
@@ -170,7 +172,7 @@ TEST(DampingOfJoints, RatioOnAnElasticGear) {
 }
 
 TEST(DampingOfJoints, StrongDampingCreeps) {
-  const double ratio = 500;  // omega is 10/s: the damper's rate times the step is 10
+  const double ratio = 500;  // omega is 10/s; the damper's rate times the step is 10
   SceneBuilder b = wheel_on_shaft(0);
   b.scene.initial_joints = {{"shaft", 0.2, 0, {}}};
   b.scene.springs.push_back({"shaft", 40, 0, {}, ratio});

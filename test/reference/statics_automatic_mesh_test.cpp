@@ -1,4 +1,4 @@
-/// elements="auto": the number of elements that a curved centreline needs.
+/// Tests elements="auto": the number of elements is sufficient for a curved centreline.
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kTipAccuracy = 0.01;
 
-/// Largest turning per element [rad], from a line with so many turns that nothing else counts.
+/// Largest rotation per element [rad], measured on a line with so many turns that no other rule matters.
 double turning_per_element(int order) {
   const double turning = 1e6;
   return turning / automatic_element_count(order, turning);
 }
 
-/// A slender arc of radius 1 in the x-y plane, turning by `angle`.
+/// A slender arc of radius 1 in the x-y plane, which turns by `angle`.
 Cantilever slender_arc(double angle, const Vector3& force) {
   Cantilever cantilever;
   cantilever.pieces = {arc({std::sin(angle), 1 - std::cos(angle), 0}, {0, 1, 0})};
@@ -30,7 +30,7 @@ Cantilever slender_arc(double angle, const Vector3& force) {
   return cantilever;
 }
 
-/// Error of the tip displacement relative to it; the largest for small forces along the three axes.
+/// Error of the tip displacement relative to the displacement: the largest one for small forces along the three axes.
 double largest_tip_error(double angle, int elements, int order) {
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,14 +56,14 @@ TEST(AutomaticMesh, TurningPerElementKeepsTheTipOfArcsWithinOnePercent) {
 
 TEST(AutomaticMesh, OneElementLessIsTooFewForTheWorstArc) {
   const double worst = 0.75 * kPi;
-  for (int order = 1; order <= 3; ++order) {  // quartic elements do with one
+  for (int order = 1; order <= 3; ++order) {  // one quartic element is sufficient
     const int elements = static_cast<int>(std::ceil(worst / turning_per_element(order)));
     EXPECT_GT(largest_tip_error(worst, elements - 1, order), kTipAccuracy) << "order " << order;
   }
 }
 
 TEST(AutomaticMesh, BothRulesTogether) {
-  // Ten turns of a spiral need more elements than the frequencies do.
+  // Ten turns of a spiral need more elements than the frequencies.
   for (int order = 1; order <= 4; ++order) {
     const double turning = 20 * kPi;
     const int elements = automatic_element_count(order, turning);

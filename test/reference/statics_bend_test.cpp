@@ -1,4 +1,4 @@
-/// The 45-degree bend of Bathe and Bolourchi (case S4), against an independent shooting solution.
+/// Tests the 45-degree bend of Bathe and Bolourchi (case S4) against an independent shooting solution.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadius = 100, kYoung = 1e7, kShear = 5e6;
 
-/// Square section of width w: shear area factor k and torsion constant J = torsion w^4.
+/// A square section of width w with the shear area factor k and the torsion constant J = torsion w^4.
 scene::DirectSection square(double width, double k, double torsion) {
   const double area = width * width, fourth = area * area;
   return section(kYoung * area, k * kShear * area, kShear * torsion * fourth, kYoung * fourth / 12, 1, 1, 1);
@@ -27,7 +27,7 @@ Cantilever bend(const scene::Section& section, double load) {
   return cantilever;
 }
 
-/// Exact Reissner-Simo solution: mesh-free shooting, relative tolerance 1e-12. The torsion constant decides the third
+/// Exact Reissner-Simo solution by mesh-free shooting, relative tolerance 1e-12. The torsion constant changes the third
 /// digit.
 struct Row {
   const char* name;
@@ -52,7 +52,7 @@ TEST(FortyFiveDegreeBend, TipAgreesWithTheTableOnAFineMesh) {
     const Cantilever cantilever = bend(square(1, row.shear_factor, row.torsion), row.load);
     const Vector3 tip = static_tip(cantilever, 16, 4).position;
     EXPECT_LT((tip - row.tip).norm(), 1e-6) << row.name << ", load " << row.load;
-    // The table has ten decimals; the shooting solution of these tests reproduces them.
+    // The table has ten decimals, which the shooting solution of these tests reproduces.
     const Vector3 shot = shooting_tip(cantilever, stiffness_matrix(square(1, row.shear_factor, row.torsion))).position;
     EXPECT_LT((shot - row.tip).norm(), 1e-9) << row.name << ", load " << row.load;
   }
@@ -80,8 +80,9 @@ TEST(FortyFiveDegreeBend, TipIsWithinOnePercentOfPublishedResults) {
   EXPECT_LT((tip - simo).norm(), 0.01 * (simo - undeformed).norm());
 }
 
-// The same bending deformation at every slenderness: a locking element stiffens as the section gets thinner. Shear and
-// extension contribute (width / radius)^2 and vanish; the rest of the error is that of the mesh, the same for all.
+// The bending deformation is the same at every slenderness; an element with locking would be too stiff for thin
+// sections. Shear and extension contribute (width / radius)^2, which vanishes. The remaining error is the mesh error,
+// equal for all.
 TEST(FortyFiveDegreeBend, ErrorDoesNotGrowWithSlenderness) {
   const double slenderness[] = {1e1, 1e2, 1e3, 1e4};
   double errors[4][5];

@@ -1,4 +1,4 @@
-/// Plane statics: the elastica (case S2), Geradin's cantilever (S6), and beams in the linear range (S13).
+/// Tests plane statics: the elastica (case S2), Geradin's cantilever (S6), and beams in the linear range (S13).
 
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,8 @@ namespace {
 
 // ---------------------------------------------------------------- large displacements
 
-/// Inextensible, without shear, load P L^2 / EI: mesh-free shooting, relative tolerance 1e-12 (the elliptic integrals).
+/// Inextensible, without shear, load P L^2 / EI, by mesh-free shooting with the relative tolerance 1e-12 (the elliptic
+/// integrals).
 struct ElasticaRow {
   double load, transverse, shortening, slope;
 };
@@ -37,7 +38,7 @@ Cantilever elastica(double load) {
   return cantilever;
 }
 
-// Axial and shear stiffness of 1e8 EI / L^2 stand for infinity: they move the tip by some 1e-8 times the load.
+// Axial and shear stiffness of 1e8 EI / L^2 stand for infinity. They move the tip by about 1e-8 times the load.
 TEST(Elastica, TipAgreesWithTheEllipticIntegrals) {
   const int elements[] = {0, 0, 96, 24, 12};
   for (int order = 2; order <= 4; ++order) {
@@ -63,8 +64,8 @@ TEST(Elastica, ErrorFallsWithOrderTwoP) {
   }
 }
 
-/// Published tip (Simpson and Palacios 2013): drop 2.159, shortening 0.596, rotation 0.6720. Reference values below:
-/// mesh-free shooting, relative tolerance 1e-12.
+/// Published tip (Simpson and Palacios 2013): drop 2.159, shortening 0.596, rotation 0.6720. The reference values below
+/// are by mesh-free shooting with the relative tolerance 1e-12.
 Cantilever geradin() {
   Cantilever cantilever;
   cantilever.pieces = {line({5, 0, 0})};
@@ -97,7 +98,7 @@ TEST(GeradinCantilever, ErrorFallsWithOrderTwoP) {
 
 // ---------------------------------------------------------------- the linear range
 
-// Loads are so small that the square of the slope, the relative error of linear theory, is below 1e-12.
+// Loads are so small that the relative error of linear theory, the square of the slope, is below 1e-12.
 constexpr double kRelative = 1e-10;
 
 TEST(LinearBeams, TimoshenkoTip) {
@@ -108,7 +109,7 @@ TEST(LinearBeams, TimoshenkoTip) {
   cantilever.section = section(young * area, kga, 1e3, ei, 1, 1, 1);
   cantilever.force = {0, 0, force};
   const double exact = force * std::pow(length, 3) / (3 * ei) + force * length / kga;
-  // The deflection is cubic: from order 2 on, the Gauss points integrate its slope exactly.
+  // The deflection is cubic. From order 2 on, the Gauss points integrate its slope exactly.
   for (int order = 2; order <= 4; ++order)
     EXPECT_NEAR(static_tip(cantilever, 3, order).position.z(), exact, kRelative * std::abs(exact));
 }
@@ -127,7 +128,7 @@ TEST(LinearBeams, TorsionAndTensionAreExactAtAnySize) {
   }
 }
 
-// Three links in a row, of which only the middle one carries the load.
+// Three links in a row; only the middle one carries the load.
 TEST(LinearBeams, LoadOnAPartOfTheSpan) {
   const double ei = 1e9, ga = 1e10, load = 1e3, a = 0.3, b = 0.7, length = 1;
   for (int order = 3; order <= 4; ++order) {
@@ -144,7 +145,7 @@ TEST(LinearBeams, LoadOnAPartOfTheSpan) {
     builder.probe("tip", "tip", {length - b, 0, 0});
     Simulation simulation(builder.scene);
     ASSERT_TRUE(simulation.solve_static(1).converged);
-    // A unit load at x bends the tip by x^2 (3 L - x) / 6 EI and shears it by x / GA; integrated over [a, b].
+    // A unit load at x bends the tip by x^2 (3 L - x) / 6 EI and shears it by x / GA. This is integrated over [a, b].
     const auto bending = [&](double x) { return (length * std::pow(x, 3) - std::pow(x, 4) / 4) / (6 * ei); };
     const auto shear = [&](double x) { return x * x / (2 * ga); };
     const double exact = -load * (bending(b) - bending(a) + shear(b) - shear(a));
@@ -152,7 +153,7 @@ TEST(LinearBeams, LoadOnAPartOfTheSpan) {
   }
 }
 
-// The prop of a propped cantilever under uniform load as its known reaction: the tip stays where it is.
+// A propped cantilever under uniform load: with the known reaction as a force, the tip does not move.
 TEST(LinearBeams, ReactionOfAProppedCantilever) {
   const double ei = 1e7, ga = 1e9, load = 1, length = 1;
   const double free_tip = load * std::pow(length, 4) / (8 * ei) + load * length * length / (2 * ga);
@@ -189,8 +190,8 @@ TEST(Statics, NewtonConvergesQuadraticallyOnALargeRotation) {
   std::printf("Newton updates:");
   for (const double norm : norms) std::printf(" %.1e", norm);
   std::printf("\n");
-  // In the asymptotic range and above round-off. Errors of displacements and of carried strains take turns in being the
-  // larger one: the mean exponent of two updates.
+  // Only updates in the asymptotic range and above round-off count. Errors of displacements and of carried strains are
+  // alternately the larger one, so the mean exponent of two updates is taken.
   std::size_t first = norms.size();
   while (first > 0 && norms[first - 1] < 0.1) --first;
   int measured = 0;

@@ -1,4 +1,4 @@
-/// Roll-up of a cantilever by an end moment (case S1): closed form for any number of turns.
+/// Tests the roll-up of a cantilever by an end moment (case S1) against its closed form, for any number of turns.
 
 #include <cmath>
 #include <tuple>
@@ -21,15 +21,15 @@ Cantilever roll_up(double turns) {
   return cantilever;
 }
 
-/// Elements so that no node of an element turns by more than pi from the reference rotation.
+/// Number of elements such that no node of an element rotates by more than pi from the reference rotation.
 int elements(int turns) {
   return turns < 5 ? 6 : 12;
 }
 
 class FullTurns : public testing::TestWithParam<std::tuple<int, int, int>> {};
 
-// Constant curvature is in the interpolation's space, and the Gauss sums over full turns vanish by symmetry: only
-// round-off remains, whatever the order and the load steps.
+// The interpolation represents constant curvature exactly, and the Gauss sums over full turns vanish by symmetry. So
+// only round-off remains, for any order and any number of load steps.
 TEST_P(FullTurns, TipReturnsToTheRootForAnyLoadSteps) {
   const auto [turns, order, load_steps] = GetParam();
   const Pose tip = static_tip(roll_up(turns), elements(turns), order, load_steps);
@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(RollUp, FullTurns,
                          testing::Combine(testing::Values(1, 2, 5), testing::Values(1, 2, 3, 4),
                                           testing::Values(1, 4, 16)));
 
-// Away from full turns the section angle is still exact, and r' = Lambda e_1 holds at the p Gauss points, so that the
-// tip has the error of Gauss quadrature.
+// For a partial turn, the section's angle is still exact, and r' = Lambda e_1 holds at the p Gauss points. So the tip
+// has the error of Gauss quadrature.
 TEST(RollUp, TipOfAPartialTurnHasTheOrderOfGaussQuadrature) {
   const double turns = 0.7, angle = 2 * kPi * turns, radius = kLength / angle;
   const Vector3 exact = radius * Vector3(std::sin(angle), 1 - std::cos(angle), 0);
@@ -59,7 +59,8 @@ TEST(RollUp, TipOfAPartialTurnHasTheOrderOfGaussQuadrature) {
   }
 }
 
-// Its nodes' quaternions remember the way, so that an element may bend to nearly 2 pi between its reference nodes.
+// The quaternions of the nodes keep track of the path, so that an element may bend by nearly 2 pi between its reference
+// nodes.
 TEST(RollUp, AnElementBendsBeyondPi) {
   for (const double turns : {0.3, 0.6, 0.9})
     for (int order = 1; order <= 4; ++order) {

@@ -1,5 +1,5 @@
-/// Cantilevers under tip force and tip moment in space: convergence to the mesh-free solution on straight, pre-twisted
-/// and curved centrelines and with full section matrices.
+/// Tests cantilevers under tip force and tip moment in space: convergence to the mesh-free solution, on straight,
+/// pre-twisted and curved centrelines, and with full section matrices.
 
 #include <cmath>
 #include <cstdio>
@@ -15,14 +15,14 @@
 namespace flexarm::test {
 namespace {
 
-/// A blade: bending stiffnesses a factor of nine apart, so that twist matters.
+/// A blade, whose bending stiffnesses differ by a factor of nine, so that twist matters.
 scene::DirectSection blade() {
   scene::DirectSection s = section(2e3, 8e2, 1.5, 1, 1, 0.1, 0.1);
   s.ei3 = 9;
   return s;
 }
 
-/// Symmetric positive definite with all couplings: extension-torsion, bending-torsion, shear-bending.
+/// A symmetric positive definite section matrix with all couplings: extension-torsion, bending-torsion, shear-bending.
 Matrix6 coupled() {
   Matrix6 c = stiffness_matrix(blade());
   const auto couple = [&](int i, int j, double share) { c(i, j) = c(j, i) = share * std::sqrt(c(i, i) * c(j, j)); };
@@ -36,7 +36,7 @@ Matrix6 coupled() {
   return c;
 }
 
-/// Inertia about the reference line with the centre of mass at `center` in the section.
+/// Inertia about the reference line, with the centre of mass at `center` in the section.
 Matrix6 inertia(const Vector3& center) {
   const double mass = 1.3;
   Matrix6 m = Matrix6::Zero();
@@ -106,7 +106,7 @@ std::vector<SpatialCase> spatial_cases() {
           {"straight_coupled", loaded(kStraight, centred), coupled()},
           {"twisted_coupled", loaded(kTwisted, centred), coupled()},
           {"curved_coupled", loaded(kCurved, centred), coupled()},
-          // Without gravity the centre of mass has no say: the same solution about the reference line.
+          // Without gravity, the centre of mass has no influence: the same solution about the reference line.
           {"straight_coupled_offset", loaded(kStraight, offset), coupled()},
           {"curved_and_twisted_coupled_offset", loaded(kCurvedAndTwisted, offset), coupled()}};
 }

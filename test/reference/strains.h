@@ -1,5 +1,5 @@
 #pragma once
-/// The order in which a beam's description has something for each strain.
+/// Indices of strains, in the order in which a beam's description has its data per strain.
 
 namespace flexarm::test {
 

@@ -1,5 +1,5 @@
-// Structural damping of the energy-momentum family: strong damping leaves nothing to ring, and the account stays exact.
-// (Its roots: numerical_dissipation_spectrum_test; its order: dynamics_order_test.)
+// Tests structural damping of the energy-momentum family: strong damping leaves no oscillation, and the energy account
+// stays exact. (numerical_dissipation_spectrum_test tests its roots, dynamics_order_test its order.)
 #include <cstdio>
 
 #include "flexarm/scene/urdf_reader.h"
@@ -9,7 +9,7 @@
 namespace flexarm::test {
 namespace {
 
-/// The arm of docs/guide.md: its motor's torque jumps at 0 and at 1 s.
+/// The arm of docs/guide.md, whose motor torque jumps at 0 and at 1 s.
 scene::SceneDescription guide_arm() {
   const scene::ReadResult result = scene::read_scene_text(R"(
     <robot name="arm">
@@ -40,8 +40,8 @@ scene::SceneDescription guide_arm() {
 }
 
 /// The scheme's velocity of the shoulder every millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000
-/// rad/s creep, those below it that a step of 1 ms does not resolve (1000 rad/s) decay with eta omega^2 / 2 = 500/s at
-/// least: of what the jump at 1 s has started, exp(-25) is left.
+/// rad/s creep. Slower modes that a step of 1 ms does not resolve (1000 rad/s) decay at least with eta omega^2 / 2 =
+/// 500/s. So exp(-25) is left of the motion that the jump at 1 s has excited.
 std::vector<double> velocities_after_jump(const std::string& scheme, int refinement) {
   Simulation simulation(guide_arm(), options(scheme, 1e-3 / refinement));
   const int shoulder = model_of(simulation).joints[model_of(simulation).coordinates.front().joint].slave;
@@ -54,8 +54,8 @@ std::vector<double> velocities_after_jump(const std::string& scheme, int refinem
   return velocities;
 }
 
-/// Root mean square of how far each value is from the mean of its neighbours: what alternates counts twice, the rest
-/// with the square of its frequency.
+/// Root mean square of the distance of each value from the mean of its neighbours. An alternating part counts twice,
+/// other parts with the square of their frequency.
 double roughness(const std::vector<double>& values) {
   double sum = 0;
   for (std::size_t i = 1; i + 1 < values.size(); ++i)
@@ -65,9 +65,9 @@ double roughness(const std::vector<double>& values) {
 
 class StructuralDamping : public ::testing::TestWithParam<std::string> {};
 
-// The step resolves all that still moves, so the velocity is about as smooth as that of steps sixteen times shorter:
-// what alternates is less than what the motion itself has. A dashpot at the middle of the step leaves six hundred times
-// as much.
+// The step resolves all modes that still move. So the velocity is about as smooth as that in steps sixteen times
+// shorter: the alternating part is smaller than the motion's own roughness. A dashpot at the middle of the step leaves
+// six hundred times as much.
 TEST_P(StructuralDamping, JumpOfATorqueLeavesNoRinging) {
   const double coarse = roughness(velocities_after_jump(GetParam(), 1)),
                fine = roughness(velocities_after_jump(GetParam(), 16));
@@ -75,7 +75,7 @@ TEST_P(StructuralDamping, JumpOfATorqueLeavesNoRinging) {
   EXPECT_LT(coarse, 2 * fine);
 }
 
-/// Steps of any length in any order; strong damping, whose memory holds much of the energy.
+/// Steps of any length in any order, with strong damping, whose memory holds much of the energy.
 void expect_exact_account(const std::string& scheme, bool is_even) {
   SceneBuilder b;
   scene::BeamDescription& beam = b.beam("arm", {{1, 0, 0}, {1.5, 0.3, 0}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 3, 2);
@@ -98,7 +98,7 @@ void expect_exact_account(const std::string& scheme, bool is_even) {
     dissipated = simulation.energies().dissipated;
   }
   EXPECT_GT(dissipated, 0);
-  EXPECT_LT(drift.energy(), 1e-10);  // round-off: Newton's last step squares its tolerance
+  EXPECT_LT(drift.energy(), 1e-10);  // round-off: Newton's last iteration squares its tolerance
 }
 
 TEST_P(StructuralDamping, AccountIsExactInHalvedSteps) {

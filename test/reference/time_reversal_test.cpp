@@ -1,4 +1,5 @@
-// Symmetry in time: N steps, all velocities reversed, N steps lead back to the start.
+// Tests symmetry in time: after N steps, reversal of all velocities, and N more steps, the mechanism is back at the
+// start.
 #include <cstdio>
 
 #include "reference/dynamics_joint_chain.h"
@@ -7,7 +8,8 @@
 namespace flexarm::test {
 namespace {
 
-/// Configuration and internal state stay, velocities change their sign (times `factor`); the predictor is forgotten.
+/// The state with reversed velocities (times `factor`) and the same configuration and internal state. The predictor is
+/// reset.
 State reversed(State state, double factor = 1) {
   for (NodeState& node : state.nodes) {
     node.velocity *= -factor;
@@ -37,13 +39,13 @@ void run_whole(Simulation& simulation, int steps) {
 }
 
 struct Return {
-  double defect = 0, path = 0;  ///< distance of start and return, of start and turn
-  double round_off = 0;         ///< bound of what rounding makes of the former
+  double defect = 0, path = 0;  ///< distances from the start: of the returned state, and of the turning point
+  double round_off = 0;         ///< bound of the defect by round-off
 };
 
-/// There and back. Each step rounds positions of size r, and thereby velocities by 2 r epsilon / h; by how much a
-/// relative change of the velocities moves the end of the way back is measured by one of 1e-7. The bound is for errors
-/// of all steps in one direction.
+/// Runs there and back. Each step rounds positions of size r, and so velocities by 2 r epsilon / h. A change of the
+/// velocities by 1e-7 measures how a relative velocity error moves the end. The bound assumes that the errors of all
+/// steps have the same direction.
 Return there_and_back(const SceneBuilder& scene, const std::string& scheme, double h, int steps) {
   Simulation simulation(scene.scene, options(scheme, h, 1e-10));
   const State begin = state_of(simulation);
@@ -80,7 +82,7 @@ TEST_P(TimeReversal, LeadsBackToTheStart) {
   expect_return(free_tree(kind), scheme, 0.02, 150);
 }
 
-// Long steps of a fast motion: whatever Newton's method leaves out would show.
+// Long steps of a fast motion: any error of Newton's method would be visible.
 TEST_P(TimeReversal, LeadsBackToTheStartInLongSteps) {
   const auto [scheme, kind] = GetParam();
   SceneBuilder tree = free_tree(kind);
@@ -93,11 +95,12 @@ INSTANTIATE_TEST_SUITE_P(Schemes, TimeReversal,
                                                               scene::JointKind::Spherical,
                                                               scene::JointKind::Universal)));
 
-// em tests with functions of the middle of a step that goes on like the last one. That middle misses the true one by
-// h^2 a / 2, from either end of the step in the same sense: what differs is of third order, and so is the return.
+// The test functions of em belong to a predicted middle of the step, which continues the last step. This middle differs
+// from the true one by h^2 a / 2, in the same sense from either end of the step. So the difference, and the error of
+// the return, are of third order.
 TEST(TimeReversal, DefectOfEmIsOfThirdOrder) {
   SceneBuilder beam = tumbling_beam();
-  beam.scene.initial_links.front().angular *= 3;  // bends it so much that the defect is seen at short steps, too
+  beam.scene.initial_links.front().angular *= 3;  // bends it so much that the defect is visible at short steps, too
   std::vector<double> defects;
   for (const int refinement : {1, 2, 4, 8}) {
     const Return way = there_and_back(beam, "em", 0.04 / refinement, 48 * refinement);

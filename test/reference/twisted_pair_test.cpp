@@ -1,4 +1,4 @@
-// Two strands wound round each other, against the closed form of a ply.
+// Tests two strands that are wound around each other against the closed form of a ply.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -13,23 +13,23 @@ constexpr double kRadius = 0.01, kLength = 0.6, kYoung = 1e5, kPoisson = 0.3;  /
 const double kArea = kPi * kRadius * kRadius, kBending = kYoung * kArea * kRadius * kRadius / 4;
 const double kShearModulus = kYoung / (2 * (1 + kPoisson)), kTorsion = kShearModulus * kArea * kRadius * kRadius / 2;
 const double kStretching = kYoung * kArea;
-const double kShearing = 6 * (1 + kPoisson) / (7 + 6 * kPoisson) * kShearModulus * kArea;  // Cowper's
+const double kShearing = 6 * (1 + kPoisson) / (7 + 6 * kPoisson) * kShearModulus * kArea;  // Cowper's shear coefficient
 
 // ---------------------------------------------------------------- the closed form
 
-/// Of one strand, per length of its undeformed line.
+/// Results for one strand, per length of its undeformed line.
 struct Ply {
-  double contact = 0;               ///< force between both [N/m]
+  double contact = 0;               ///< force between the strands [N/m]
   double bending = 0, tension = 0;  ///< of a section [N m, N]
-  double moment = 0;                ///< about the axis, with the arm of the force [N m]
-  double turn = 0;                  ///< of the helix about the axis [rad/m]
+  double moment = 0;                ///< about the axis, including the arm of the force [N m]
+  double turn = 0;                  ///< rotation of the helix about the axis [rad/m]
 };
 
 /// The uniform ply without friction of J. M. T. Thompson, G. H. M. van der Heijden and S. Neukirch, Supercoiling of DNA
-/// plasmids: mechanics of the generalized ply, Proc. R. Soc. Lond. A 458 (2002) 959, with the stretch and the shear of
-/// the strand's law, as docs/notes/contact.md 6 and test/elements/scripts/reference_ply.py have it. `radius` of the
-/// helix [m], `angle` of its tangent with the axis [rad], `twist` of a section [rad/m], `axial` force of a strand [N].
-/// `give` 0: the ply of the paper, whose strands neither stretch nor shear; 1: with both.
+/// plasmids: mechanics of the generalized ply, Proc. R. Soc. Lond. A 458 (2002) 959. Stretch and shear of the strand's
+/// law are added as in docs/notes/contact.md 6 and test/elements/scripts/reference_ply.py. `radius` of the helix [m],
+/// `angle` of its tangent with the axis [rad], `twist` of a section [rad/m], `axial` force of a strand [N]. `give` 0:
+/// the ply of the paper, whose strands neither stretch nor shear; 1: with stretch and shear.
 Ply ply(double radius, double angle, double twist, double axial, double give) {
   Ply out;
   double stretch = 1, beta = angle;
@@ -62,8 +62,9 @@ std::string strand(const std::string& name, double place, int elements) {
       name, elements, kLength, kRadius, kYoung, kPoisson, place);
 }
 
-/// Both are built in at one end, and at the other in a head that turns by 6 rad and is drawn at along the axis by twice
-/// `axial`. They start a hundredth of their radius apart, and contact gives way by as much.
+/// Both strands are clamped at one end. At the other end they are clamped in a head that turns by 6 rad and is pulled
+/// along the axis by twice `axial`. They start a hundredth of their radius apart, which is also the contact's
+/// penetration.
 Simulation twisted(int elements, double axial) {
   const std::string body = touching::inertial(0.05, Vector3::Constant(1e-5));
   const double place = 1.005 * kRadius;
@@ -85,8 +86,8 @@ Simulation twisted(int elements, double axial) {
 /// The middle third of a strand, per length of its undeformed line.
 struct Middle {
   double radius = 0, angle = 0;  ///< of the helix [m, rad]
-  double turn = 0;               ///< of the helix about the axis [rad/m]
-  double twist_by_ends = 0;      ///< of sections: mean of what they turn about the line all along the strand [rad/m]
+  double turn = 0;               ///< rotation of the helix about the axis [rad/m]
+  double twist_by_ends = 0;      ///< of sections: mean rotation about the line over the whole strand [rad/m]
   double contact = 0, bending = 0, tension = 0, torsion = 0;  ///< [N/m, N m, N, N m]
 };
 
@@ -94,7 +95,7 @@ double angle_about_z(const Vector3& from, const Vector3& to) {
   return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
 }
 
-/// What helix its nodes are on.
+/// Computes the helix on which the strand's nodes are.
 void read_helix(const Simulation& simulation, int elements, Middle& out) {
   const auto place = [&](double s) { return simulation.section(1, s).pose.position; };
   constexpr int kFine = 40;
@@ -112,7 +113,7 @@ void read_helix(const Simulation& simulation, int elements, Middle& out) {
   out.angle = std::atan2(out.radius * out.turn, pitch);
 }
 
-/// Resultants at Gauss points; forces between both by a window without edges.
+/// Computes resultants at Gauss points, and forces between the strands by a smooth window.
 void read_forces(const Simulation& simulation, int elements, Middle& out) {
   const int first = elements / 3, count = elements - 2 * first;
   const double size = kLength / elements;
@@ -133,7 +134,7 @@ void read_forces(const Simulation& simulation, int elements, Middle& out) {
   }
 }
 
-/// Parts by which it is off the closed form at its radius, angle and twist.
+/// Relative differences from the closed form at the strand's radius, angle and twist.
 struct Errors {
   double contact = 0, bending = 0;
 };
@@ -148,14 +149,14 @@ Errors errors(int elements) {
   EXPECT_GT(middle.angle, 0.1);
   const double twist = middle.torsion / kTorsion;
   const Ply exact = ply(middle.radius, middle.angle, twist, axial, 1);
-  // Of what is left of motion: drag falls by exp(-10 t) or faster, for 0.6 s.
+  // Remainder of the motion: drag decays at least by exp(-10 t), for 0.6 s.
   const double rest = std::exp(-6.0);
   EXPECT_NEAR(middle.turn, exact.turn, 1e-3 * exact.turn);
   EXPECT_NEAR(middle.tension, exact.tension, rest * exact.tension);
   EXPECT_NEAR(twist, middle.twist_by_ends, rest * twist) << "which is one number along the strand";
   const double moment = simulation.effort(simulation.find_coordinate("turn").value()) / 2;
   EXPECT_NEAR(moment, exact.moment, rest * exact.moment);
-  // Strands of the paper neither stretch nor shear.
+  // Compares with the paper's strands, which neither stretch nor shear.
   const Ply paper = ply(middle.radius, middle.angle, twist, axial, 0);
   const double give = axial / kStretching + axial / kShearing;
   Errors out{middle.contact / exact.contact - 1, middle.bending / exact.bending - 1};
@@ -164,14 +165,14 @@ Errors errors(int elements) {
   return out;
 }
 
-// Where strands leave their clamps, what is bent otherwise falls by exp(-x sqrt(F / B)), 0.2 % at the ends of the
-// middle third; elements of order 2 have the curvature of a line that turns by 0.73 rad in each to (0.73)^4 / 720 at
-// these points, and the force along it by two derivatives more.
+// Where strands leave their clamps, the difference in bending decays by exp(-x sqrt(F / B)), to 0.2 % at the ends of
+// the middle third. Elements of order 2 turn by 0.73 rad each. They have the curvature of a line to (0.73)^4 / 720 at
+// these points, and the contact force with two derivatives more.
 TEST(TwistedPair, IsTheUniformPlyOfTheClosedForm) {
   const Errors coarse = errors(6), fine = errors(9);
   EXPECT_LT(std::abs(fine.contact), 0.005);
   EXPECT_LT(std::abs(fine.bending), 0.002);
-  // At least as by order 2.
+  // At least of order 2.
   EXPECT_GT(std::abs(coarse.contact), 2.25 * std::abs(fine.contact));
   EXPECT_GT(std::abs(coarse.bending), 2.25 * std::abs(fine.bending));
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Scenes and parameters that cannot be used end the node with status 1 and a message, not with a crash or silence."""
+"""Tests that the node ends with status 1 and a message if a scene or parameter cannot be used."""
 
 import os
 import subprocess
@@ -83,7 +83,8 @@ class BadScenes(unittest.TestCase):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters:=5"], "must be a dictionary of numbers")
 
     def refuse_changes(self, entry, changes):
-        """All in one list, as each error is reported: an entry for each pair of a change and what is told of it."""
+        """Check all changes in one list, since each error is reported. `changes`: pairs of a changed entry and the
+        expected text of its error."""
         entries = [dict(entry, name="%s%d" % (entry["name"], i)) for i in range(1, len(changes) + 1)]
         told = ["entry %d ('%s'): " % (i, one["name"]) for i, one in enumerate(entries, 1)]
         self.refuse_controllers([dict(one, **change) for one, (change, _) in zip(entries, changes)],
@@ -104,7 +105,7 @@ class BadScenes(unittest.TestCase):
         fields = "name", "action_ns", "type", "joints"
         self.refuse_controllers([{key: good[key] for key in good if key != field} for field in fields],
                                 *("it has no '%s'" % field for field in fields))
-        self.refuse_changes(good, (({"joints": ["nose"]}, "there is no joint coordinate 'nose'"),
+        self.refuse_changes(good, (({"joints": ["nose"]}, "there is no joint coordinate 'nose'; the scene has "),
                                    ({"joints": ["turn", "turn"]}, "joint 'turn' is named twice"),
                                    ({"joints": []}, "with one at least"),
                                    ({"joints": ["lift", 5]}, "must be a list of names"),
@@ -112,16 +113,17 @@ class BadScenes(unittest.TestCase):
                                    ({"joints": ["right"]}, "right"),
                                    ({"type": "Follow"}, "or 'GripperCommand', got 'Follow'")))
         self.refuse_controllers([dict(good, name=5), dict(good, name="a b")], "its 'name' must be text",
-                                "'a b/follow' is no name of an action")
+                                "'a b/follow' is not a name of an action")
         self.refuse_controllers([good, dict(good, name="other")],
                                 "entry 2 ('other'): joint 'lift' is named twice, in 'arm' as well")
-        self.refuse_controllers([good, dict(good, joints=["turn"])], "another one with the action 'arm/follow'")
+        self.refuse_controllers([good, dict(good, joints=["turn"])], "another controller has the action 'arm/follow'")
         self.refuse_changes(gripper, (({"joints": ["left", "lift", "turn"]}, "one joint or two, got 3"),
                                       ({"joints": ["left"], "parallel": True}, "'parallel' is for two joints"),
                                       ({"parallel": "yes"}, "its 'parallel' must be true or false"),
                                       ({"max_effort": -1.0}, "its 'max_effort' must be a number >= 0"),
                                       ({"stall_timeout": "long"}, "its 'stall_timeout' must be a number >= 0"),
-                                      ({"command_joint": "lift"}, "'command_joint' is none of its joints, got 'lift'")))
+                                      ({"command_joint": "lift"},
+                                       "'command_joint' is not one of its joints, got 'lift'")))
 
     def test_every_error_of_controllers_is_reported(self):
         self.refuse_controllers([{"name": "arm", "type": "FollowJointTrajectory"},

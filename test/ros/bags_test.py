@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs are recorded and replayed, commands are played to a node, with and without the clock."""
+"""Tests that runs are recorded and replayed, and that commands are played to a node, with and without a clock."""
 
 import os
 import re
@@ -21,11 +21,12 @@ TOPICS = ["/joint_states", "/joint_force_command", "/joint_command"]
 
 
 class Recorder:
-    """rosbag record, connected to what it records."""
+    """Runs the program of `rosbag record` itself, because old versions of `rosbag` do not hand SIGINT on to it. end()
+    waits for the bag."""
 
     def __init__(self, file, *topics):
         self.file = file
-        self.process = subprocess.Popen(["rosbag", "record", "-O", file, "__name:=recorder", *topics],
+        self.process = subprocess.Popen(["rosrun", "rosbag", "record", "-O", file, "__name:=recorder", *topics],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def end(self):
@@ -35,7 +36,7 @@ class Recorder:
 
 
 def replay(bag, *arguments, scene=SCENE):
-    """Exit status and output of `flexarm replay`."""
+    """Return exit status and output of `flexarm replay`."""
     done = subprocess.run(["rosrun", "flexarm", "flexarm", "replay", bag, scene, *arguments], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, timeout=60, check=False)
     return done.returncode, done.stdout
@@ -75,7 +76,8 @@ class Bags(unittest.TestCase):
                 else:
                     force.send(force_command(["left_shoulder"], [0.1 * n], 0.004 if n % 3 else 0.0))
                 wait_until(lambda count=count: len(states) > count, "the step")
-                # Of two topics the recorder takes what has come in the meantime in any order: it has to keep up.
+                # The recorder takes waiting messages of two topics in any order. So each message gets the time to be
+                # recorded.
                 time.sleep(0.02)
             force.send(force_command(["nobody"], [1.0]))
             time.sleep(0.5)
@@ -118,11 +120,11 @@ class Bags(unittest.TestCase):
             time.sleep(0.5)
             for effort in (2.0, -1.0, 0.5):
                 force.send(force_command(["left_shoulder", "right_shoulder"], [effort, -0.2], 0.05))
-                time.sleep(0.3)  # both hear it while the clock stands
+                time.sleep(0.3)  # both nodes receive it while the clock stands still
                 self.assertTrue(arm.step(100).success)
                 time.sleep(0.3)
             recorder.end()
-        # Kept factors of the tangent are the same, and so is every bit.
+        # Both runs use the same kept factors of the tangent, so that every bit is the same.
         status, output = replay(self.bag, "--largest", "1e-12")
         self.assertEqual(status, 0, output)
         self.assertIn("3 commands given", output)
@@ -130,7 +132,7 @@ class Bags(unittest.TestCase):
         self.assertGreater(compared, 100)
 
     def record_live(self):
-        """Commands come at any time, to a node that goes at the clock's pace."""
+        """Record commands that come at any time, to a node that runs at the pace of the wall clock."""
         with RunningNode("_paused:=true", "_publish_rate:=200"):
             arm = SimulatedArm()
             recorder = Recorder(self.bag, *TOPICS)
@@ -148,7 +150,7 @@ class Bags(unittest.TestCase):
         status, output = replay(self.bag)
         self.assertEqual(status, 0, output)
         self.assertIn("3 commands given", output)
-        # What no command moves is where it was, so that steps are counted well.
+        # A joint without a command stays where it was if the steps are counted well.
         shuttle = re.search(r"^shuttle +([^ ]+)", output, re.MULTILINE)
         self.assertLess(float(shuttle.group(1)), 1e-9, output)
         status, output = replay(self.bag, scene=self.other_scene("3500"))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A simulation that is the clock of everybody sets it back to zero when it is asked to, and only then."""
+"""Tests that a simulation that is the ROS clock sets the clock back to zero on request, and only then."""
 
 import math
 import time
@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 
 
 class Stamps:
-    """Of all messages of some topics [ns]."""
+    """The stamps of all messages of some topics [ns]."""
 
     def __init__(self):
         self.of = {}
@@ -41,7 +41,7 @@ class Stamps:
         return receive
 
     def jumps(self, topic):
-        """How often a topic's stamps went back, and to where."""
+        """Return the stamps of a topic to which time went back."""
         stamps = list(self.of[topic])
         return [later for earlier, later in zip(stamps, stamps[1:]) if later <= earlier]
 
@@ -58,7 +58,7 @@ class ClockReset(unittest.TestCase):
         wait_until(lambda: rospy.get_time() > seconds, f"{seconds} s of simulated time")
 
     def latest_transform(self):
-        """Its stamp [s]; infinite if there is none."""
+        """Return the stamp of the latest transform [s]; infinite if there is none."""
         if not self.buffer.can_transform("base", "right_hand", rospy.Time()):
             return math.inf
         return self.buffer.lookup_transform("base", "right_hand", rospy.Time()).header.stamp.to_sec()
@@ -79,9 +79,9 @@ class ClockReset(unittest.TestCase):
         self.assert_begins_anew()
         wait_until(lambda: rospy.get_time() < 1.0, "ROS time to go back")
         self.assertFalse(self.stamps.last_status.paused)
-        # Who listens to frames forgets those of before, which were later.
+        # Listeners of frames discard the frames with later stamps.
         wait_until(lambda: self.latest_transform() < 0.9, "the frames of now only")
-        # Commands and their durations count from there.
+        # Commands and their durations count from the new time.
         CommandTopic("joint_force_command", JointForceCommand).send(force_command(["left_shoulder"], [2.0], 0.2))
         wait_until(lambda: self.arm.joint("left_shoulder").effort == 2.0, "the effort")
         wait_until(lambda: self.arm.joint("left_shoulder").effort == 0.0, "its end")

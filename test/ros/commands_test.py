@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Joint efforts reach the joints they name, and only those; bad commands are refused whole."""
+"""Tests that joint efforts reach exactly the joints that they name, and that invalid commands are refused as a
+whole."""
 
 import math
 import time
@@ -13,11 +14,11 @@ from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, w
 from std_msgs.msg import Bool, Float64
 from visualization_msgs.msg import MarkerArray
 
-ROUND_OFF = 1e-12  # rad and m: the joints compared are not coupled at all
+ROUND_OFF = 1e-12  # rad and m: the compared joints are not coupled
 
 
 class Commands(unittest.TestCase):
-    """The simulation is paused: steps are made by hand, so that nothing depends on timing."""
+    """The simulation is paused and steps are made by hand, so that nothing depends on timing."""
 
     @classmethod
     def setUpClass(cls):
@@ -86,7 +87,7 @@ class Commands(unittest.TestCase):
         step = self.arm.status().step
         self.force.send(force_command(["left_shoulder"], [1.0], 20 * step))
         self.wait_for_effort("left_shoulder", 1.0)
-        # The first of the twenty steps has been made.
+        # One of the twenty steps has been made already.
         self.assertTrue(self.arm.step(18).success)
         self.assertEqual(self.arm.joint("left_shoulder").effort, 1.0)
         self.assertTrue(self.arm.step(2).success)
@@ -114,7 +115,7 @@ class Commands(unittest.TestCase):
         time.sleep(0.2)
         self.force.send(force_command(["left_shoulder"], [3.0]))
         self.wait_for_effort("left_shoulder", 3.0)
-        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)  # its command is forgotten
+        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)  # its command was forgotten
 
     def test_emergency_stop_holds_back_the_scenes_efforts_and_gives_them_back(self):
         stop = CommandTopic("/flexarm/emergency_stop", Bool)
@@ -142,7 +143,7 @@ class Commands(unittest.TestCase):
     # ---- bad commands
 
     def assert_refused(self, bad):
-        """Messages of one topic arrive in order: once the good command is there, the bad one has been dealt with."""
+        """Messages of a topic arrive in order: when the valid command acts, the invalid one has been handled."""
         self.force.send(bad)
         self.force.send(force_command(["right_shoulder"], [0.25]))
         self.wait_for_effort("right_shoulder", 0.25)
@@ -177,7 +178,7 @@ class Commands(unittest.TestCase):
     def test_warns_without_flooding(self):
         warnings = warnings_of_flood(lambda: self.force.send(force_command(["nose"], [1.0])))
         self.assertEqual(len(warnings), 1)
-        self.assertIn("nose", warnings[0])
+        self.assertIn("there is no joint coordinate 'nose'; the scene has ", warnings[0])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""~contacts: each point that touches, at the rate of the other topics; the sensor of what touches a link; arrows."""
+"""Tests the topic ~contacts with each touching point at the rate of the other topics, the contact sensor of a link, and
+the arrows."""
 
 import unittest
 
@@ -11,14 +12,14 @@ from simulated_arm import SimulatedArm, wait_until
 from visualization_msgs.msg import MarkerArray
 
 WEIGHT = 2 * 9.81  # N
-STEPS = 1000  # of 1 ms: the block has come to rest by then
+STEPS = 1000  # of 1 ms: the block is at rest by then
 RATE = 100  # Hz
 
 
 class Contacts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.arm = SimulatedArm()  # paused from the start: nothing is on its way
+        cls.arm = SimulatedArm()  # paused from the start, so no message is on its way
         cls.contacts, cls.scales, cls.markers = [], [], []
         subscribers = [
             rospy.Subscriber("flexarm/contacts", ContactArray, cls.contacts.append, queue_size=1000),
@@ -36,12 +37,13 @@ class Contacts(unittest.TestCase):
                        "contacts and samples")
         wait_until(lambda: len(cls.markers) >= 20, "markers")
         for subscriber in subscribers:
-            subscriber.unregister()  # other scenes that a test loads are no part of the run
+            subscriber.unregister()  # other scenes that a test loads are not part of the run
 
     def test_they_come_at_the_rate_of_states(self):
         stamps = [message.header.stamp.to_nsec() for message in self.contacts]
         self.assertEqual(len(set(stamps)), len(stamps))
-        self.assertLessEqual(len(stamps), RATE * STEPS // 1000 + STEPS // 50)  # one more after each call of a service
+        # Each call of a service publishes one more
+        self.assertLessEqual(len(stamps), RATE * STEPS // 1000 + STEPS // 50)
 
     def test_each_point_is_told(self):
         message = self.contacts[-1]
@@ -75,7 +77,7 @@ class Contacts(unittest.TestCase):
         arrows = [marker for marker in self.markers[-1].markers if marker.ns == "contacts"]
         self.assertEqual(len(arrows), 1)
         heights = [point.z for point in arrows[0].points]
-        self.assertGreater(max(heights), 0.13)  # upwards, on the block
+        self.assertGreater(max(heights), 0.13)  # on the block, pointing upwards
         self.assertIn("contacts", [marker.text for marker in self.markers[-1].markers if marker.ns == "legend"])
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""PD controllers that close their loop on joint_states hold the guide's second arm, the demo, and a six-axis robot: one
-in roscpp at 1 kHz, one in rospy at 100 Hz. The robot waits for its commands (lock step): its gears vibrate where a loop
-is late by some milliseconds, as a busy machine makes it."""
+"""Tests PD controllers that close their loop on joint_states: one in roscpp at 1 kHz, one in rospy at 100 Hz.
+
+They hold the guide's second arm, the demo, and a six-axis robot. The robot waits for its commands (lock step), because
+its gears vibrate if the loop is late by some milliseconds, as on a busy machine."""
 
 import math
 import subprocess
@@ -19,7 +20,8 @@ DURATION = 10.0  # s, of each loop
 
 
 class Listener:
-    """Of joint_states: errors of positions and velocities beside set points, which are `offset` from the first ones."""
+    """Receives joint_states: errors of positions and velocities relative to set points, which are `offset` from the
+    first positions."""
 
     def __init__(self, namespace, offset):
         self.offset = offset
@@ -40,7 +42,7 @@ class Listener:
 
 
 class PythonController(Listener):
-    """Efforts stiffness (set point - position) - damping velocity on every joint, every 10 ms of stamps."""
+    """Commands the effort stiffness (set point - position) - damping velocity on every joint, every 10 ms of stamps."""
 
     def __init__(self, namespace, stiffness, damping, offset):
         self.stiffness, self.damping = stiffness, damping
@@ -59,7 +61,7 @@ class PythonController(Listener):
 
 
 class RoscppController(Listener):
-    """The same at every message: pd_controller.cpp."""
+    """The same controller at every message, as a node: pd_controller.cpp."""
 
     def __init__(self, namespace, stiffness, damping, offset):
         rospy.set_param(namespace + "/pd_controller", dict(stiffness=stiffness, damping=damping, offset=offset))
@@ -78,7 +80,7 @@ class RoscppController(Listener):
 
 class Control(unittest.TestCase):
     def hold(self, controller, namespace, stiffness, damping, offset, inertia):
-        """Every joint alike; `inertia`: the least that one moves [kg m^2]."""
+        """Hold the same set point on every joint. `inertia`: the smallest inertia that a joint moves [kg m^2]."""
         arm = SimulatedArm(namespace)
         arm.pause()
         arm.reset()
@@ -89,11 +91,11 @@ class Control(unittest.TestCase):
         arm.pause()
         controller.end()
         self.assertFalse(arm.status().failed)
-        # On a busy machine, messages that are late by ten are left out.
+        # On a busy machine, messages that are late by more than ten are dropped.
         states = list(controller.states)
         self.assertGreater(len(states), 100 * DURATION)
-        # Spring and damper to the set points only take energy out: no swing is wider than the first one, none is faster
-        # than that of a mass on the springs.
+        # Springs and dampers to the set points only take energy out. So no swing is wider than the first one, and none
+        # is faster than that of a mass on the springs.
         widest = max(math.sqrt(sum(e * e for e in errors)) for _, errors, _ in states)
         self.assertLess(widest, 1.05 * offset * math.sqrt(joints))
         fastest = max(abs(v) for stamp, _, velocities in states for v in velocities if stamp > states[-1][0] - 1)
@@ -115,10 +117,10 @@ class Control(unittest.TestCase):
         end = arm.status().steps + steps
         wait_until(lambda: arm.status().steps >= end, "step %d" % end, patience=60)
 
-    # Its servos, switched to mode effort, give what holds the robot up; the controller is springs and dampers beside
-    # that. It sees joints, its efforts act on motors behind elastic gears: what it takes out of a vibration of the gear
-    # is less than the gear's own damping as long as it damps less than that, times (J + j)^2 / (J j), with J, j of link
-    # and rotor.
+    # The robot's servos are in mode effort and hold it up. The controller adds springs and dampers. It measures joints,
+    # but its efforts act on motors behind elastic gears. In a vibration of a gear, link and rotor move in opposite
+    # directions, so the controller feeds energy in. The gear's own damping takes out more, if the controller's damping
+    # is less than the gear's times (J + j)^2 / (J j), with the inertias J of the link and j of the rotor.
     def test_robot_at_1000_hz(self):
         stiffness = numpy.array([2000.0, 2000.0, 800.0, 60.0, 60.0, 20.0])
         damping = [60.0, 60.0, 24.0, 1.5, 1.5, 0.5]
@@ -136,8 +138,8 @@ class Control(unittest.TestCase):
         controller.end()
         self.assertFalse(arm.status().failed)
         errors = numpy.array([errors for _, errors, _ in controller.states])
-        # The springs take up at most what a sudden force does on its way: sum of k e^2 / 2 <= force * sum of lever e;
-        # gravity, which changes with the pose, is a twentieth of them.
+        # The springs take up at most the work of a sudden force: sum of k e^2 / 2 <= force * sum of lever e. Gravity
+        # changes with the pose; this effect is a twentieth.
         energies = errors**2 @ stiffness
         self.assertLess(math.sqrt(energies.max()), 1.05 * 2 * force * math.sqrt((levers**2 / stiffness).sum()))
         self.assertGreater(numpy.abs(errors).max(), 1e-3)

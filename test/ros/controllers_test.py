@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Groups of joints and grippers have actions, which a client that knows control_msgs alone gets on with."""
+"""Tests the actions of groups of joints and of grippers, with a client that knows only control_msgs."""
 
 import math
 import unittest
@@ -14,7 +14,7 @@ from simulated_arm import CommandTopic, SimulatedArm, wait_until
 from std_msgs.msg import Bool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-# Published with control_msgs, for example by rosserial's and roslibjs' generated messages.
+# Published with control_msgs, for example in the messages that rosserial and roslibjs generate.
 CHECKSUMS = {
     "FollowJointTrajectoryAction": "bc4f9b743838566551c0390c65f1a248",
     "FollowJointTrajectoryActionGoal": "cff5c1d533bf2f82dd0138d57f4304bb",
@@ -26,12 +26,12 @@ CHECKSUMS = {
     "GripperCommandActionFeedback": "653dff30c045f5e6ff3feb3409f4558d",
 }
 TERMINAL = (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.REJECTED, GoalStatus.PREEMPTED)
-GAP = 0.03  # m, of each finger to the block
+GAP = 0.03  # m, distance of each finger from the block
 TOLERANCE = 0.001  # m, of grippers
 
 
 def of_control_msgs(name):
-    """The message as another package would have it: the same fields, and the name that is there."""
+    """Return the message class as another package would have it: the same fields, but with the name in control_msgs."""
     ours = getattr(messages, name)
     return type(name, (ours,), {"_type": "control_msgs/" + name, "_md5sum": CHECKSUMS[name],
                                 "__slots__": ours.__slots__})
@@ -68,7 +68,8 @@ class Client:
 
 
 def as_moveit_sends_it(names, start, end, seconds=0.5, points=11):
-    """From where the joints stand, with stamp 0, a first point at 0, all rates, and no tolerances."""
+    """Return a trajectory from the joints' positions as MoveIt sends it: with stamp 0, a first point at 0, all rates,
+    and no tolerances."""
     trajectory = JointTrajectory(joint_names=names)
     for k in range(points):
         t = k / (points - 1)
@@ -138,7 +139,7 @@ class Controllers(unittest.TestCase):
         self.assert_ends(self.turn, GoalStatus.SUCCEEDED, error_code=0)
         wait_until(lambda: abs(self.position("lift") - 0.2) < 1e-6, "the end of the lift")
         wait_until(lambda: abs(self.position("turn") + 0.5) < 1e-6, "the end of the turn")
-        # The servo's lag stays below the largest acceleration over 20^2/s^2.
+        # The servo's lag is at most the largest acceleration over 20^2/s^2.
         for client, joint, way, seconds in ((self.lift, "lift", 0.2, 0.5), (self.turn, "turn", 0.5, 0.8)):
             self.assertGreater(len(client.feedback), 5)
             for feedback in client.feedback:
@@ -148,7 +149,7 @@ class Controllers(unittest.TestCase):
     def test_a_joint_of_another_group_is_refused(self):
         self.lift.send(as_moveit_sends_it(["lift", "turn"], [0, 0], [0.2, 0.2]))
         result = self.assert_ends(self.lift, GoalStatus.REJECTED, error_code=-2)
-        self.assertIn("'turn' is no joint of this controller, which has lift", result.error_string)
+        self.assertIn("'turn' is not a joint of this controller, which has lift", result.error_string)
 
     def test_tolerances_of_a_group(self):
         goal = as_moveit_sends_it(["lift"], [0], [0.5], seconds=0.3)
@@ -210,11 +211,11 @@ class Controllers(unittest.TestCase):
         self.assertAlmostEqual(result.position, GAP, delta=TOLERANCE)
         self.assertAlmostEqual(result.effort, 10.0, delta=0.01)
         self.assertIn("stalled at 0.03", self.gripper.client.get_goal_status_text())
-        # When the finger is thrown back the damping adds to it.
+        # When the finger is thrown back, the damping adds to the effort.
         self.assertLess(max(feedback.effort for feedback in self.gripper.feedback), 10.0 * 1.05)
         self.assert_ends(self.lift, GoalStatus.SUCCEEDED)
         rospy.sleep(0.2)
-        self.assertAlmostEqual(self.effort("left"), 10.0, delta=0.01)  # it goes on holding
+        self.assertAlmostEqual(self.effort("left"), 10.0, delta=0.01)  # the gripper still holds the block
         self.gripper.send(grip(0.05, 4.0))
         result = self.assert_ends(self.gripper, GoalStatus.ABORTED, stalled=True)
         self.assertAlmostEqual(result.effort, 4.0, delta=0.01)
@@ -227,10 +228,11 @@ class Controllers(unittest.TestCase):
         wait_until(lambda: abs(self.position("lower_jaw") - 0.03) < 1e-5, "the lower jaw")
 
     def test_an_integral_does_not_wind_up(self):
-        """Both jaws press against their stops at 0.05 with the effort of the controller's own."""
+        """Both jaws press against their stops at 0.05 with the controller's own effort limit."""
         self.jaws.send(grip(0.2))
         result = self.assert_ends(self.jaws, GoalStatus.ABORTED, stalled=True)
-        self.assertAlmostEqual(result.position, 0.1, delta=2 * TOLERANCE)  # stops give way by 15 N over 20 kN/m each
+        # The stops give way by 15 N over 20 kN/m each
+        self.assertAlmostEqual(result.position, 0.1, delta=2 * TOLERANCE)
         rospy.sleep(1.0)
         for joint in ("upper_jaw", "lower_jaw"):
             self.assertAlmostEqual(self.effort(joint), 15.0, delta=0.1)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""simulate.launch from a user's folder: relative paths, a file of parameters, what is said at the start."""
+"""Tests simulate.launch in a user's folder: relative paths, a parameter file, and messages at the start."""
 
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -38,7 +39,7 @@ CONTROLLERS = """
 controller_list:
   - {name: elbow_controller, action_ns: follow, type: FollowJointTrajectory, joints: [elbow]}
 """
-# What xacro is told is in a comment of what it makes.
+# A stand-in for xacro, which prints its arguments.
 XACRO = """#!/bin/sh
 echo "$@" >&2
 case "$*" in *broken*) echo "undefined macro: left_arm" >&2; exit 2;; esac
@@ -47,7 +48,7 @@ sed "s/SIDE/${2#side:=}/" "$1"
 
 
 class Launched:
-    """roslaunch in a folder, with the test's master, until the `with` block ends."""
+    """Runs roslaunch in a folder, with the test's master, until the `with` block ends."""
 
     def __init__(self, folder, *arguments, path=None):
         self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
@@ -99,14 +100,14 @@ class Launching(unittest.TestCase):
         return rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
 
     def test_a_file_of_parameters(self):
-        rospy.set_param("/flexarm/publish_rate", 7)  # of before: it is cleared
+        rospy.set_param("/flexarm/publish_rate", 7)  # set by an earlier run; it must be cleared
         rospy.set_param("/flexarm/stop_duration", 7)
         with self.launch("scene:=arm.urdf", "config:=arm.yaml", "headless:=true", "real_time_factor:=2",
                          "status_rate:=20") as launched:
             self.wait_for_status()
             node = rospy.get_param("/flexarm")
             self.assertEqual(node["publish_rate"], 50)
-            self.assertEqual(node["real_time_factor"], 2)  # what is given on the command line counts first
+            self.assertEqual(node["real_time_factor"], 2)  # the command line has priority
             self.assertEqual(node["command_timeout"], 0.25)
             self.assertEqual(node["parameters"], {"mass": 2.5})
             self.assertNotIn("stop_duration", node)
@@ -115,12 +116,25 @@ class Launching(unittest.TestCase):
             wait_until(lambda: "unknowns" in launched.output(), "the announcement")
             said = launched.output()
             self.assertRegex(said, r"scene 'arm' of \S+/arm.urdf: joints shoulder, elbow; \d+ unknowns")
+            self.assertNotIn("does not know", said)  # neither names of the launch file nor what the node sets
             self.assertRegex(said, r"scheme \w+, step 0.001 s; topics in /, services in /flexarm")
+            # As the table of `flexarm check`: the rod has no hub.
+            wait_until(lambda: re.search(r"shake joints .* if they damp by more than, in N m s/rad: elbow [0-9.]+ \(",
+                                         launched.output()), "the advice for controllers")
 
     def test_a_file_of_controllers(self):
         with self.launch("scene:=arm.urdf", "controllers:=controllers.yaml", "headless:=true"):
             self.wait_for_status()
             wait_until(lambda: rospy.get_published_topics("/elbow_controller/follow"), "the controller")
+
+    def test_misspelt_parameters_are_told(self):
+        with open(os.path.join(self.folder.name, "misspelt.yaml"), "w", encoding="utf-8") as file:
+            file.write(CONFIG + "publish_rte: 500\nof_others: {a: 1}\n")
+        with self.launch("scene:=arm.urdf", "config:=misspelt.yaml", "headless:=true") as launched:
+            wait_until(lambda: "unknowns" in launched.output(), "the announcement")
+            said = launched.output()
+        self.assertEqual(said.count("does not know"), 1)
+        self.assertIn("\n/flexarm/of_others\n/flexarm/publish_rte; did you mean 'publish_rate'?", said)
 
     def test_doubts_are_said_as_flexarm_check_says_them(self):
         scene = os.path.join(self.folder.name, "sampled.urdf")
@@ -155,7 +169,7 @@ class Launching(unittest.TestCase):
             self.wait_for_status()
             self.assertIn('<robot name="left_arm">', rospy.get_param("/robot_description"))
             wait_until(lambda: "scene 'left_arm'" in launched.output(), "the announcement")
-            # The stand-in tells its arguments.
+            # The stand-in prints its arguments.
             told = "xacro says: %s/arm.urdf.xacro side:=left mirrored:=true" % self.folder.name
             self.assertIn(told, launched.output())
 
@@ -174,12 +188,13 @@ class Launching(unittest.TestCase):
             return program.stdout
 
         self.assertIn("scene 'right_arm'", check(scene, "--xacro-args", "side:=right"))
-        self.assertIn(scene + ": file: xacro ended with status 2: ", check(scene, "--xacro-args", "broken=1"))
+        self.assertIn(scene + ": xacro ended with status 2: ", check(scene, "--xacro-args", "broken=1"))
         self.assertIn("takes no arguments of xacro, as its name does not end with .xacro, got 'a:=1'",
                       check(os.path.join(self.folder.name, "arm.urdf"), "--xacro-args", "a:=1"))
         with open(scene, "a", encoding="utf-8") as file:
             file.write("<!-- not raw -->")
-        self.assertIn("scene 'SIDE_arm'", check(scene, path=os.environ["PATH"]))  # without xacro: as it is
+        # Without xacro, the text is read as it is
+        self.assertIn("scene 'SIDE_arm'", check(scene, path=os.environ["PATH"]))
         with open(scene, "w", encoding="utf-8") as file:
             file.write(SCENE.replace('value="${mass}"', 'value="$(arg mass)"'))
         self.assertIn("this is xacro and must be expanded to URDF first", check(scene, path=os.environ["PATH"]))

@@ -1,4 +1,4 @@
-/// What nobody listens to is not made.
+/// Tests that messages and results without a subscriber are not computed.
 
 #include <flexarm/SimulatorStatus.h>
 #include <geometry_msgs/WrenchStamped.h>
@@ -29,12 +29,12 @@ Simulation make_simulation() {
   return Simulation(*std::move(result.scene));
 }
 
-/// The publishers of a node, beside a simulation that they look at.
+/// The publishers of a node, with a simulation.
 class Listeners : public ::testing::Test {
  protected:
   MadeForOutput made_by_a_step() {
     EXPECT_TRUE(simulation_.step().converged);
-    stamp_ += ros::Duration(1);  // at which all is due
+    stamp_ += ros::Duration(1);  // at which all messages are due
     state_.publish(stamp_, false);
     beams_.publish(stamp_, false);
     sensors_.publish(stamp_);

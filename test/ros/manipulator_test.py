@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The cylindrical manipulator goes through its motion under commands as it does under the loads of its scene."""
+"""Tests that the cylindrical manipulator moves under commands as it does under the loads of its scene."""
 
 import csv
 import os
@@ -14,8 +14,8 @@ from flexarm.msg import JointForceCommand
 from simulated_arm import CommandTopic, SimulatedArm, force_command
 
 COORDINATES = ["r", "guide/1", "guide/2"]
-EVERY = 0.01  # s, of constant efforts
-STEP = 0.001  # s, of the scene
+EVERY = 0.01  # s, duration of each constant effort
+STEP = 0.001  # s, the scene's step
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from demo_commands import expand  # noqa: E402
@@ -34,7 +34,7 @@ def positions_under_the_scenes_own_loads():
 
 
 class Manipulator(unittest.TestCase):
-    """The simulation is paused: steps are made by hand, so that nothing depends on timing."""
+    """The simulation is paused and steps are made by hand, so that nothing depends on timing."""
 
     def test_commands_do_what_loads_do(self):
         arm = SimulatedArm()
@@ -57,8 +57,9 @@ class Manipulator(unittest.TestCase):
             self.assertTrue(arm.step(round(EVERY / STEP) - done).success)
         self.assertAlmostEqual(arm.status().time, 1.5, delta=1e-9)
         self.assertFalse(arm.status().failed)
-        # Efforts that are constant over pulses, with the mean of the linear ones, err by the square of the pulse; a
-        # late one acts in its place for a step. What remains is far less than the way, 0.4 m, 0.3 m and 1.4 rad.
+        # The efforts are constant over pulses, with the mean of the linear efforts: an error of the square of the
+        # pulse. If a command is late, the last one acts for a step more. The remaining error is far smaller than the
+        # travel, 0.4 m, 0.3 m and 1.4 rad.
         self.assertLess(late, 300)
         for name, expected in zip(COORDINATES, positions_under_the_scenes_own_loads()):
             self.assertAlmostEqual(arm.joint(name).position, expected, delta=0.02, msg=name)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""config/node_parameters.yaml has all parameters of the node with their defaults, and simulate.launch loads such files.
+"""Tests that config/node_parameters.yaml has all parameters of the node with their defaults, and that simulate.launch
+loads it.
 
-Run by ctest, without a master: what the sources read is compared with what the file says.
+Run by ctest, without a master: compares the parameters that the sources read with those in the file.
 """
 
 import pathlib
@@ -14,11 +15,11 @@ import yaml
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILE = ROOT / "config/node_parameters.yaml"
 SET_BY_NODE = {"view/frame", "view/center", "view/radius"}
-READ_ELSEWHERE = {"diagnostic_period"}  # by diagnostic_updater
 
 
 def names_in_sources():
-    """What the node reads: reader.read("name", and what read_choice, getParam and hasParam are given."""
+    """Return the parameters that the node reads: arguments of reader.read("name", read_choice, getParam and
+    hasParam."""
     names = set()
     for source in (ROOT / "src/ros").glob("*.cpp"):
         text = source.read_text(encoding="utf-8")
@@ -29,17 +30,18 @@ def names_in_sources():
 
 
 def defaults_in_headers():
-    """Of members that are called as their parameters."""
+    """Return the defaults of members that have the names of their parameters."""
     defaults = {}
     for header in ("src/ros/parameters.h", "src/messages/marker_messages.h"):
         text = (ROOT / header).read_text(encoding="utf-8")
         for kind, name, value in re.findall(r"\b(double|bool|int) (\w+) =\s*([\w.]+);", text):
             defaults[name] = {"true": True, "false": False}[value] if kind == "bool" else float(value)
+        defaults.update(re.findall(r'\bstd::string (\w+) = "([^"]*)";', text))
     return defaults
 
 
 def written():
-    """All names of the file: with defaults, and as comments, `# name: example`."""
+    """Return all names of the file: those with defaults, and those in comments, `# name: example`."""
     text = FILE.read_text(encoding="utf-8")
     return set(yaml.safe_load(text)), set(re.findall(r"^# (\w+):", text, re.MULTILINE))
 
@@ -47,7 +49,13 @@ def written():
 class Parameters(unittest.TestCase):
     def test_the_file_has_every_parameter(self):
         with_default, as_comment = written()
-        self.assertEqual(with_default | as_comment - with_default, names_in_sources() | READ_ELSEWHERE)
+        self.assertEqual(with_default | as_comment - with_default, names_in_sources())
+
+    def test_the_node_knows_every_parameter(self):
+        text = (ROOT / "src/ros/parameters.cpp").read_text(encoding="utf-8")
+        known = re.search(r"kParameterNames = \{(.*?)\};", text, re.DOTALL).group(1)
+        of_node = {name.partition("/")[0] for name in SET_BY_NODE}
+        self.assertEqual(set(re.findall(r'"(\w+)"', known)), names_in_sources() | of_node)
 
     def test_defaults_are_those_of_the_sources(self):
         defaults = defaults_in_headers()
@@ -65,8 +73,12 @@ class Parameters(unittest.TestCase):
         arguments = set(re.findall(r'<arg name="(\w+)" default="config"', text))
         self.assertTrue(arguments <= names_in_sources(), arguments - names_in_sources())
         for file in sorted((ROOT / "launch").glob("*.launch")):
-            told = subprocess.run(["roslaunch", "--ros-args", str(file)], stdout=subprocess.PIPE, check=True,
-                                  universal_newlines=True).stdout
+            done = subprocess.run(["roslaunch", "--ros-args", str(file)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, check=False, universal_newlines=True)
+            if "No module named 'arg_dump'" in done.stderr:
+                self.skipTest("this old roslaunch cannot list arguments with Python 3")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = done.stdout
             required = told.partition("Optional Arguments:")[0]
             self.assertEqual(re.findall(r"^  (\w+):", required, re.MULTILINE),
                              ["scene"] if file.name == "simulate.launch" else [], file.name)

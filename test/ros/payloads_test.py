@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Links are attached and detached, models come and go, while the node runs."""
+"""Tests that links are attached and detached, and that models come and go, while the node runs."""
 
 import math
 import tempfile
@@ -22,7 +22,7 @@ BOX = """<link name="box">""" + INERTIAL.format(0.5, 0.01) + """</link>
 <joint name="of_box" type="floating"> <parent link="base"/> <child link="box"/> <origin xyz="1 0 0"/> </joint>"""
 BALL = """<robot name="ball"> <link name="ball">""" + INERTIAL.format(2, 0.02) + """</link> </robot>"""
 
-ALONE, TOGETHER = 0.1, 0.1 + 0.01 + 0.5  # about the axis [kg m^2]
+ALONE, TOGETHER = 0.1, 0.1 + 0.01 + 0.5  # inertia about the axis, of the disc alone and with the box [kg m^2]
 SPEED = 2.0  # of the disc alone [rad/s]
 ROUND_OFF = 1e-10
 
@@ -40,6 +40,7 @@ class Payloads(unittest.TestCase):
         node = RunningNode("_scene:=" + self.scene.name, *arguments)
         node.__enter__()
         self.addCleanup(node.__exit__)
+        self.output = node.output
         self.arm = SimulatedArm()
         self.attach = rospy.ServiceProxy("/flexarm/attach", AttachLink)
         self.detach = rospy.ServiceProxy("/flexarm/detach", DetachLink)
@@ -58,7 +59,8 @@ class Payloads(unittest.TestCase):
         self.expect(self.attach("box", "disc"))
         self.assertEqual(self.arm.joint_states().name, ["turn"])
         speed = SPEED * ALONE / TOGETHER
-        self.assertAlmostEqual(self.arm.joint("turn").velocity, speed, delta=ROUND_OFF)  # its momentum is the same
+        # The angular momentum is the same
+        self.assertAlmostEqual(self.arm.joint("turn").velocity, speed, delta=ROUND_OFF)
         self.assertIn("is attached already", self.refusal(self.attach("box", "disc")))
         self.assertTrue(self.arm.step(500).success)
         angle = speed * 0.5
@@ -71,7 +73,7 @@ class Payloads(unittest.TestCase):
             self.assertAlmostEqual(self.arm.joint("of_box/" + axis).position, place, delta=1e-6)
 
     def speed_with_a_command(self, *parts):
-        """Of the disc, less that right after the impact, when 1 rad/s^2 has been commanded for 1 s."""
+        """Return the disc's speed after 1 s with the effort for 1 rad/s^2, less its speed right after the impact."""
         self.start(scene(*parts), "_paused:=true")
         CommandTopic("/turn/command", Float64).send(TOGETHER)
         wait_until(lambda: self.arm.step(1).success and self.arm.joint("turn").effort == TOGETHER, "the command")
@@ -100,6 +102,13 @@ class Payloads(unittest.TestCase):
         self.assertIn("<mass>", self.refusal(self.spawn(model_xml=BALL.replace('value="2"', 'value="heavy"'))))
         self.assertIn("not by both or none", self.refusal(self.spawn(pose=pose)))
         self.assertTrue(self.arm.step(100).success)
+
+    def test_warnings_of_models_are_told_but_not_that_they_are_clamped(self):
+        self.start(scene(DISC), "_paused:=true")
+        self.expect(self.spawn(model_xml=BALL.replace('izz="0.02"', 'izz="0.2"')))
+        wait_until(lambda: "no body has a principal moment" in self.output(), "the warning")
+        self.assertIn("ball/z", self.arm.joint_states().name)
+        self.assertNotIn("clamped", self.output())
 
     def test_frames_follow_while_it_runs(self):
         self.start(scene(DISC, BOX))

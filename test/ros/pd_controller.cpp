@@ -1,5 +1,5 @@
-// A controller that closes its loop over topics: at each message of joint_states an effort on every joint,
-// stiffness (set point - position) - damping velocity. Set points are where joints are at first, and `~offset` beside.
+// A PD controller as a node, for control_test.py. At each message of joint_states it commands the effort stiffness (set
+// point - position) - damping velocity on every joint. Set points are the first positions plus `~offset`.
 #include <flexarm/JointForceCommand.h>
 #include <ros/init.h>
 #include <ros/node_handle.h>
@@ -13,8 +13,8 @@ class PdController {
  public:
   PdController() {
     const ros::NodeHandle own("~");
-    own.getParam("stiffness", stiffness_);  // one for each joint [N m/rad]
-    own.getParam("damping", damping_);      // the same [N m s/rad]
+    own.getParam("stiffness", stiffness_);  // for each joint [N m/rad]
+    own.getParam("damping", damping_);      // for each joint [N m s/rad]
     own.getParam("offset", offset_);
     const ros::TransportHints without_delay = ros::TransportHints().tcpNoDelay();
     commands_ = node_.advertise<flexarm::JointForceCommand>("joint_force_command", 1, /*latch=*/true);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A node as a guest of the ROS graph: it heeds its parameters, minds its frames, and takes its leave."""
+"""Tests the node's process: parameters, frames of other publishers, clocks, real-time priority, and its end."""
 
 import os
 import signal
@@ -60,7 +60,7 @@ class Process(unittest.TestCase):
             with RunningNode("_scene:=" + file.name, "_start:=clamp,equilibrium", "_massless:=lock"):
                 for _ in range(3):
                     states = rospy.wait_for_message("/joint_states", JointState, PATIENCE)
-                    # What round-off of angles of a radian makes of a step.
+                    # The velocity that round-off of angles of 1 rad gives in a step.
                     self.assertLess(max(map(abs, states.velocity)), 1e-12)
 
     def test_counts_the_steps_that_it_cannot_make(self):
@@ -72,7 +72,7 @@ class Process(unittest.TestCase):
 
     def test_warns_where_the_system_refuses_to_be_real_time(self):
         wrapper = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
-        if os.geteuid() == 0:  # who may do all must not
+        if os.geteuid() == 0:  # root must lose its privileges
             wrapper += ["setpriv", "--bounding-set=-sys_nice,-ipc_lock"]
         with RunningNode("_realtime:=true", wrapper=wrapper) as node:
             wait_until(lambda: "~realtime: the system refuses SCHED_FIFO" in node.output(), "the warning")
@@ -85,7 +85,7 @@ class Process(unittest.TestCase):
         rospy.set_param("/use_sim_time", True)
         try:
             with RunningNode(is_silent=True) as node:
-                wait_until(lambda: "nobody publishes /clock" in node.output(), "the warning")
+                wait_until(lambda: "no node publishes /clock" in node.output(), "the warning")
         finally:
             rospy.set_param("/use_sim_time", False)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Handles in rviz that pull on links, and what rviz is shown of a scene that has everything."""
+"""Tests the handles in rviz that pull on links, and the markers of a scene that contains everything."""
 
 import math
 import time
@@ -40,7 +40,7 @@ class Pulls(unittest.TestCase):
         return self.arm.joint("rail").position
 
     def drag(self, seconds, until=None, **arguments):
-        """As rviz does: it tells again where the mouse is, four times a second at least."""
+        """Drag a handle as rviz does, which sends the mouse position at least four times a second."""
         end = time.monotonic() + seconds
         self.hand.send(feedback(Feedback.MOUSE_DOWN))
         while time.monotonic() < end and not (until and until()):
@@ -48,7 +48,7 @@ class Pulls(unittest.TestCase):
             time.sleep(0.1)
 
     def assert_goes_to(self, wanted, drag_to=None):
-        """1.6 kg between springs of 300 or 400 N/m, damped by 40 N s/m: after 1 s exp(-12) is left."""
+        """The mass is 1.6 kg between springs of 300 or 400 N/m, damped by 40 N s/m: after 1 s exp(-12) is left."""
         there = lambda: abs(self.position() - wanted) < 1e-3 * TARGET  # noqa: E731
         if drag_to is not None:
             self.drag(PATIENCE, there, y=drag_to)
@@ -59,7 +59,7 @@ class Pulls(unittest.TestCase):
         self.assertEqual({handle.name for handle in handles}, {"slider", "rod"})
         for handle in handles:
             self.assertEqual(handle.header.frame_id, FRAME)
-            self.assertTrue(handle.header.stamp.is_zero())  # or rviz would answer in its own fixed frame
+            self.assertTrue(handle.header.stamp.is_zero())  # otherwise rviz would answer in its own fixed frame
 
     def test_pulls_until_it_is_let_go(self):
         self.assert_goes_to(TARGET * PULL / (PULL + SPRING), drag_to=TARGET)
@@ -82,7 +82,7 @@ class Pulls(unittest.TestCase):
             self.drag(0.3, **arguments)
             wait_until(lambda: any("is not pulled" in text for text in self.warnings), "a warning")
             self.assertLess(abs(self.position()), 1e-3 * TARGET)
-            time.sleep(1)  # warnings are throttled
+            time.sleep(1)  # because warnings are throttled
 
     def test_markers_show_everything(self):
         self.drag(0.5, y=TARGET)
@@ -100,7 +100,7 @@ class Pulls(unittest.TestCase):
         self.hand.send(feedback(Feedback.MOUSE_UP))
         self.assertEqual(set(shown), {"rod", "trails", "applied wrenches", "reactions", "text", "legend"})
         self.assertEqual({marker.header.frame_id for markers in shown.values() for marker in markers}, {FRAME})
-        # The box in the place of the tube, which would have a radius of 5 mm, bent by 3 N at its end.
+        # The beam is drawn as its box instead of the tube, whose radius would be 5 mm. It is bent by 3 N at its end.
         heights = [point.z for point in shown["rod"][-1].points]
         self.assertGreater(max(heights), 0.02)
         self.assertGreater(max(heights) + min(heights), 2e-3)

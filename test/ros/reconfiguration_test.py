@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Parameters are changed while the simulation runs, by the client that Debian has; what cannot be is refused whole."""
+"""Tests that parameters change while the simulation runs, by Debian's client, and that impossible changes are refused
+as a whole."""
 
 import time
 import unittest
@@ -57,7 +58,7 @@ class Reconfiguration(unittest.TestCase):
         return self.latest()
 
     def latest(self):
-        time.sleep(0.3)  # what was sent before arrives
+        time.sleep(0.3)  # until messages that were sent before have arrived
         return self.states
 
     def test_there_is_what_the_scene_has(self):
@@ -84,7 +85,7 @@ class Reconfiguration(unittest.TestCase):
         status = self.status
         self.assertEqual((status.scheme, status.step), ("newmark", 0.0005))
         self.assertEqual(rospy.get_param("flexarm/step"), 0.0005)
-        # The effort that was commanded acts on: the rate grows by effort over inertia.
+        # The commanded effort still acts: the rate grows by effort over inertia.
         self.assertTrue(self.arm.step(200).success)
         later = self.latest()
         index = later.name.index("loose")
@@ -94,7 +95,7 @@ class Reconfiguration(unittest.TestCase):
 
     def test_gravity_acts(self):
         self.client.update_configuration({"gravity_z": -4.0})
-        # The servo is a spring of 400 N/m under 1 kg.
+        # The servo acts as a spring of 400 N/m on 1 kg.
         wait_until(lambda: abs(self.position("lift") + 4.0 / 400) < 1e-6, "the lift to sink")
 
     def test_gains_act(self):
@@ -109,7 +110,7 @@ class Reconfiguration(unittest.TestCase):
         subscriber = rospy.Subscriber("joint_states", JointState, lambda m: stamps.append(m.header.stamp.to_sec()))
         self.addCleanup(subscriber.unregister)
         wait_until(lambda: len(stamps) > 10, "messages")
-        # As many as their stamps say; a step lasts 2 ms of wall time, 1 ms simulated.
+        # The rate holds for stamps. A step takes 2 ms of wall time and 1 ms of simulated time.
         for earlier, later in zip(stamps[1:], stamps[2:]):
             self.assertGreaterEqual(later - earlier, 0.05 - 0.002)
         self.client.update_configuration({"real_time_factor": 0.0})

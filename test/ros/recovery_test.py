@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A step that would take too long by the clock on the wall is given up, with a reason; the state stays, and goes on."""
+"""Tests that a step that takes too much wall time is given up with a reason, and that the simulation can continue."""
 
 import unittest
 
@@ -32,7 +32,7 @@ class Recovery(unittest.TestCase):
                     cls.recoveries = value.value
 
     def step_until(self, success):
-        """Steps, one by one, until one succeeds or fails."""
+        """Make single steps until one succeeds or fails, as `success` says."""
         answers = []
 
         def ended():
@@ -45,7 +45,7 @@ class Recovery(unittest.TestCase):
     def test_is_bounded_by_the_clock_on_the_wall(self):
         self.force.send(force_command(["left_shoulder"], [1e6]))
         answer = self.step_until(False)
-        self.assertIn("the step takes longer than it may by the clock on the wall", answer.message)
+        self.assertIn("the step exceeds its limit of wall time", answer.message)
         self.assertIn("recovery_wall_time", answer.message)
         wait_until(lambda: self.status is not None and self.status.failed, "the status of the failure")
         self.assertEqual(self.status.message, answer.message)
@@ -55,7 +55,7 @@ class Recovery(unittest.TestCase):
         wait_until(lambda: "halvings (down to 1/" in self.recoveries, "the recoveries among the diagnostics")
         self.assertEqual(rospy.get_param("/flexarm/recovery_wall_time"), 1e-9)
 
-        # It goes on from the last good sub-step, however often it is given up.
+        # The simulation continues from the last good sub-step, however often a step is given up.
         further = [self.arm.step(1).time for _ in range(20)]
         self.assertEqual(further, sorted(further))
         self.assertGreater(further[-1], answer.time)

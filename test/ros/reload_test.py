@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The scene is read again while the node runs: joints, links and sensors come and go, time goes on."""
+"""Tests that the scene is reloaded while the node runs: joints, links and sensors come and go, and time continues."""
 
 import tempfile
 import unittest
@@ -32,7 +32,7 @@ def scene(*joints, more="", simulation=""):
 
 
 class Scene:
-    """A scene file that is written anew."""
+    """A scene file that can be rewritten."""
 
     def __init__(self, text):
         self.file = tempfile.NamedTemporaryFile("w", suffix=".urdf")
@@ -64,7 +64,8 @@ class Reload(unittest.TestCase):
         self.addCleanup(node.__exit__)
         self.arm = SimulatedArm()
         self.states = Log("/joint_states", JointState)
-        self.addCleanup(self.states.subscriber.unregister)  # else the next test's would share its connection
+        # Otherwise the next test's subscriber would share its connection
+        self.addCleanup(self.states.subscriber.unregister)
         wait_until(lambda: self.states.names() == ["first", "second"], "both joints")
 
     def reload(self, text):
@@ -74,7 +75,7 @@ class Reload(unittest.TestCase):
         self.assertIn("changing", answer.message)
 
     def turn(self, joint):
-        """Commands the joint by its own topic until it turns."""
+        """Command the joint by its own topic until it turns."""
         topic = CommandTopic("/" + joint + "/command", Float64)
         topic.send(0.5)
 
@@ -93,10 +94,10 @@ class Reload(unittest.TestCase):
         self.turn("first")
         self.reload(scene("second", "third"))
         wait_until(lambda: self.states.names() == ["second", "third"], "the other joints")
-        self.assertEqual(max(map(abs, self.states.messages[-1].velocity)), 0)  # no command of before acts
+        self.assertEqual(max(map(abs, self.states.messages[-1].velocity)), 0)  # no earlier command acts
         self.turn("third")
         wait_until(lambda: self.states.messages[-1].velocity[0] == 0, "the second one at rest")
-        # Nobody listens for the joint that is gone.
+        # The node has no subscription for the removed joint.
         _, subscriptions, _ = rosgraph.Master("/reload_test").getSystemState()
         self.assertNotIn("/first/command", dict(subscriptions))
         self.assertIn("/third/command", dict(subscriptions))
@@ -137,7 +138,7 @@ class Reload(unittest.TestCase):
             self.assertEqual(self.states.names(), ["first", "second"])
         before = self.states.messages[-1]
         wait_until(lambda: self.states.messages[-1].position[0] > before.position[0], "the first one to turn on")
-        self.assertIn("~reload: the scene stays as it was", self.node.output())
+        self.assertIn("~reload: the scene was not changed", self.node.output())
         self.scene.file.close()
         self.assertFalse(self.arm.reload().success)
 
@@ -155,7 +156,7 @@ class Reload(unittest.TestCase):
                                simulation='<initial joint="first" position="${angle}"/>'))
         self.start("_parameters/angle:=0.5")
         self.assertEqual(self.states.messages[-1].position[0], 0.5)
-        for angle in (0.75, 1):  # whole numbers, too
+        for angle in (0.75, 1):  # integers are accepted, too
             rospy.set_param("/flexarm/parameters/angle", angle)
             self.assertTrue(self.arm.reload().success)
             wait_until(lambda: self.states.messages[-1].position[0] == angle, "the angle that is set")

@@ -1,4 +1,4 @@
-"""A node that a test starts and ends by itself."""
+"""A node that a test starts and ends itself."""
 
 import os
 import subprocess
@@ -12,12 +12,12 @@ SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf"
 
 
 class RunningNode:
-    """The node as a process of its own, its output in a file; ends with the `with` block.
+    """Runs the node as a separate process with its output in a file, until the end of the `with` block.
 
-    `wrapper`: a command that starts it.
+    `wrapper`: a command that starts the node.
     """
 
-    process_options = {}  # of subprocess.Popen
+    process_options = {}  # options of subprocess.Popen
 
     def __init__(self, *arguments, is_silent=False, wrapper=()):
         self.arguments = arguments

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What show_in_rviz.py hands to rviz fits the scene of the simulator in its namespace."""
+"""Tests that the view that show_in_rviz.py gives to rviz fits the scene of the simulator in its namespace."""
 
 import math
 import os
@@ -34,7 +34,7 @@ class Rviz(unittest.TestCase):
         self.assertEqual(self.arguments[:2] + self.arguments[3:], ["rviz", "-d", "__name:=rviz"])
 
     def test_view_fits_the_scene(self):
-        """Two links of 1 m that turn about the origin reach 2 m."""
+        """Two links of 1 m that rotate about the origin reach 2 m."""
         radius = 2.0
         self.assertEqual(self.manager["Global Options"]["Fixed Frame"], "left/world")
         camera = self.manager["Views"]["Current"]
@@ -43,16 +43,16 @@ class Rviz(unittest.TestCase):
         self.assertAlmostEqual(camera["Focal Point"]["Y"], 0, delta=ROUND_OFF)
 
     def test_the_picture_is_the_one_that_markers_are_placed_in(self):
-        """src/messages/scene_extent knows where the camera stands, and how large what is reached looks from there."""
+        """src/messages/picture_axes must have the same camera, and the same apparent size of the reachable sphere."""
         camera = self.manager["Views"]["Current"]
-        with open(os.path.join(ROOT, "src/messages/scene_extent.cpp"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "src/messages/picture_axes.cpp"), encoding="utf-8") as file:
             yaw, pitch = re.search(r"kCameraYaw = ([\d.]+), kCameraPitch = ([\d.]+);", file.read()).groups()
         self.assertEqual((camera["Yaw"], camera["Pitch"]), (float(yaw), float(pitch)))
-        with open(os.path.join(ROOT, "src/messages/scene_extent.h"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "src/messages/picture_axes.h"), encoding="utf-8") as file:
             outline = float(re.search(r"kOutline = ([\d.]+);", file.read()).group(1))
         distance = show_in_rviz.DISTANCE
         self.assertLess(abs(outline - distance / math.sqrt(distance**2 - 1)), 2e-3)
-        # Above and below there is room for five lines of text, 1.3 times 6 % of the radius each.
+        # Above and below there is space for five lines of text, each 1.3 times 6 % of the radius high.
         self.assertGreater(distance * math.tan(0.5 * camera["Field of View"]), outline + 5 * 1.3 * 0.06 + 0.02)
 
     def test_draws_rigid_links_and_beams(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Topics of sensors: each sample once, at the sensor's rate, as a message of the usual type."""
+"""Tests the topics of sensors: each sample is sent once, at the sensor's rate, as a message of the usual type."""
 
 import unittest
 
@@ -16,15 +16,15 @@ TOPICS = {
     "eye": PoseStamped,
     "gauge": StrainStamped,
 }
-STEPS = 2000  # of 1 ms: the arm has come to rest by then
-AT_ONCE = 50  # steps: no more than a publisher's queue holds
+STEPS = 2000  # of 1 ms: the arm is at rest by then
+AT_ONCE = 50  # steps: not more than a publisher's queue holds
 SAMPLES = {"force_torque": STEPS // 10, "unit": STEPS, "eye": STEPS, "gauge": STEPS}
 
 
 class Sensors(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.arm = SimulatedArm()  # paused from the start: nothing is on its way
+        cls.arm = SimulatedArm()  # paused from the start, so no message is on its way
         cls.received = {name: [] for name in TOPICS}
         subscribers = [
             rospy.Subscriber("sensors/" + name, message_type, cls.received[name].append, queue_size=10000)
@@ -36,7 +36,7 @@ class Sensors(unittest.TestCase):
             messages.clear()
         for done in range(AT_ONCE, STEPS + 1, AT_ONCE):
             cls.arm.step(AT_ONCE)
-            # Each topic has a connection of its own, which may lag behind the others.
+            # Each topic has its own connection, which may lag behind the others.
             wait_until(lambda: all(len(cls.received[name]) >= count * done // STEPS for name, count in SAMPLES.items()),
                        "samples of each sensor")
 

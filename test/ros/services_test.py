@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pause, step, resume, reset and failure of a simulation that is the clock of everybody; time never runs backwards."""
+"""Tests pause, step, resume, reset and failure of a simulation that is the ROS clock. Time never runs backwards."""
 
 import math
 import os
@@ -46,7 +46,7 @@ class StampLog:
 
 
 class ClockedArm(unittest.TestCase):
-    """Messages arrive when they arrive: hence the waiting for what a service brought about."""
+    """Base class. Messages arrive at any time, so tests wait for the effects of services."""
 
     @classmethod
     def setUpClass(cls):
@@ -72,10 +72,10 @@ class ClockedArm(unittest.TestCase):
 
     def pause_and_wait(self):
         self.arm.pause()
-        time.sleep(0.2)  # what was sent before arrives
+        time.sleep(0.2)  # until messages that were sent before have arrived
 
     def states_when_paused(self):
-        time.sleep(0.2)  # the same
+        time.sleep(0.2)  # likewise
         return self.log.last["/joint_states"]
 
 
@@ -85,9 +85,9 @@ class Services(ClockedArm):
         time.sleep(1.0)
         last, wall_time = self.status(), time.monotonic() - first_wall
         made = (last.steps + last.overruns - first.steps - first.overruns) * self.step_size
-        # Each status is up to a period (0.1 s) old, and the catch-up may hold another 0.1 s back.
+        # Each status is up to a period (0.1 s) old, and the catch-up may contain another 0.1 s.
         self.assertLess(abs(made - wall_time), 0.5)
-        # A measurement takes 50 ms at least, and up to 100 ms of backlog may be made up in it.
+        # A measurement takes at least 50 ms, in which up to 100 ms of backlog may be made up.
         self.assertGreater(last.real_time_factor, 0)
         self.assertLessEqual(last.real_time_factor, (50 + 100) / 50)
 
@@ -217,7 +217,7 @@ class States(ClockedArm):
         wait_until(lambda: self.status().header.stamp > later_stamp, "the status after the state was loaded")
         self.assertEqual(self.states_when_paused().position, saved.position)
         self.assertTrue(self.arm.step(200).success)
-        # Kept factors of the tangent are not part of a state: the same to within Newton's tolerance.
+        # Kept factors of the tangent are not part of a state, so positions agree to within Newton's tolerance.
         for position, expected in zip(self.states_when_paused().position, later.position):
             self.assertAlmostEqual(position, expected, delta=1e-6)
 
@@ -255,7 +255,7 @@ class JointStates(ClockedArm):
         self.assertEqual(self.status().time, status.time)
         self.assertTrue(self.arm.step(10).success)
         turned = Joint(self.states_when_paused(), "right_shoulder").position - 0.7
-        self.assertAlmostEqual(turned, 10 * self.step_size * 1.5, delta=1e-4)  # the hand's share changes slowly
+        self.assertAlmostEqual(turned, 10 * self.step_size * 1.5, delta=1e-4)  # the effect of the hand changes slowly
 
     def test_what_is_not_given_stays(self):
         self.assertTrue(self.arm.set_joint_state(names=["right_shoulder"], velocities=[0.4]).success)
@@ -299,7 +299,7 @@ class Wrenches(ClockedArm):
     def test_moment_about_a_joint_does_what_its_effort_does(self):
         force = CommandTopic("joint_force_command", JointForceCommand)
         force.send(force_command(["right_shoulder"], [self.TORQUE]))
-        time.sleep(0.2)  # until the command is there
+        time.sleep(0.2)  # until the command has arrived
         self.make_steps()
         expected = self.angle()
         force.send(force_command(["right_shoulder"], [0.0]))
@@ -316,18 +316,19 @@ class Wrenches(ClockedArm):
         once = self.angle()
         self.arm.reset()
         self.make_steps()
-        self.assertEqual(self.angle(), 0)  # a reset takes them away
+        self.assertEqual(self.angle(), 0)  # a reset removes wrenches
         for _ in range(2):
             self.pull()
         self.make_steps()
-        self.assertAlmostEqual(self.angle(), 2 * once, delta=0.01 * once)  # the hand's share turns with the angle
+        # The effect of the hand changes with the angle
+        self.assertAlmostEqual(self.angle(), 2 * once, delta=0.01 * once)
         self.arm.clear_wrenches()
         self.arm.reset()
         self.make_steps()
         self.assertEqual(self.angle(), 0)
 
     def rate_after(self, **fields):
-        """After so many steps, from rest."""
+        """Return the rate after STEPS steps from rest with this wrench."""
         self.arm.reset()
         self.pull(**fields)
         self.make_steps()
@@ -340,9 +341,9 @@ class Wrenches(ClockedArm):
         for steps in (1, 2, 20):
             rate = self.rate_after(duration=steps * self.step_size)
             self.assertAlmostEqual(rate, steps * one_step, delta=0.01 * steps * one_step)
-        # What begins after half of the steps acts in the other half.
+        # A wrench that begins after half of the steps acts during the other half.
         self.arm.reset()
-        time.sleep(0.2)  # until the status is there
+        time.sleep(0.2)  # until the status has arrived
         self.pull(start=self.status().header.stamp + rospy.Duration.from_sec(self.STEPS / 2 * self.step_size))
         self.make_steps()
         half = Joint(self.states_when_paused(), "right_shoulder").velocity
@@ -398,7 +399,7 @@ class Failure(ClockedArm):
 
     def test_goes_on_from_the_last_good_state_with_a_new_command(self):
         self.force.send(force_command(["left_shoulder"], [0.0]))
-        time.sleep(0.2)  # until the command is there
+        time.sleep(0.2)  # until the command has arrived
         failed_at = self.status()
         self.arm.resume()
         wait_until(lambda: self.status().time > failed_at.time, "the simulation to go on")

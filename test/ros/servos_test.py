@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Set points reach the servos they name; bad ones are refused whole, and the emergency stop switches servos off."""
+"""Tests that set points reach the servos that they name, that invalid ones are refused as a whole, and that the
+emergency stop switches servos off."""
 
 import math
 import os
@@ -14,16 +15,17 @@ from sensor_msgs.msg import JointState
 from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until, warnings_of_flood
 from std_msgs.msg import Bool, Float64
 
-STEP = 0.001  # s, the scene's
+STEP = 0.001  # s, the scene's step
 TIMEOUT = 1.0  # s, ~command_timeout
-# Critically damped at 20/s, and first order at 20/s: after one second exp(-20) is left, times 20 of the first.
+# Servos are critically damped with 20/s, or of first order with 20/s. After one second exp(-20) is left, in the former
+# case times 20.
 SETTLED = 5e-8
 SETTLED_RATE = 1e-5  # rad/s: the tolerance of Newton's method, 1e-8 rad, over a step
 START = 0.25  # m, the scene's set point of the lift
 
 
 class Servos(unittest.TestCase):
-    """The simulation is paused: steps are made by hand, so that nothing depends on timing."""
+    """The simulation is paused and steps are made by hand, so that nothing depends on timing."""
 
     @classmethod
     def setUpClass(cls):
@@ -42,7 +44,7 @@ class Servos(unittest.TestCase):
         self.assertTrue(self.arm.step(round(seconds / STEP)).success)
 
     def wait_for_effort(self, name, condition):
-        """Steps until the effort of a joint is as wanted."""
+        """Make steps until the effort of a joint satisfies the condition."""
 
         def arrived():
             self.run_for(STEP)
@@ -51,7 +53,8 @@ class Servos(unittest.TestCase):
         wait_until(arrived, "an effort of " + name)
 
     def wait_for_press(self, effort):
-        """The effort's servo gives its set point at once: whatever was sent before on its topic has been dealt with."""
+        """Wait for an effort of the effort servo, which gives its set point at once. Then all earlier messages of its
+        topic have been handled."""
         self.wait_for_effort("press", lambda value: value == effort)
 
     # ---- good set points
@@ -100,9 +103,9 @@ class Servos(unittest.TestCase):
         names = ["lift", "spindle", "press"]
         self.set_points.send(JointState(name=names, position=[0.5] * 3, velocity=[1] * 3, effort=[1] * 3))
         self.wait_for_press(1.0)
-        self.run_for(TIMEOUT - 2 * STEP)  # one step has been made
+        self.run_for(TIMEOUT - 2 * STEP)  # one step has been made already
         self.assertEqual(self.arm.joint("press").effort, 1.0)
-        self.run_for(3 * STEP)  # times are sums: round-off may cost one
+        self.run_for(3 * STEP)  # times are sums, whose round-off may cost one step
         self.assertEqual(self.arm.joint("press").effort, 0.0)
         self.run_for(1.5)
         self.assertAlmostEqual(self.arm.joint("spindle").velocity, 0.0, delta=SETTLED_RATE)
@@ -124,13 +127,14 @@ class Servos(unittest.TestCase):
         self.assertAlmostEqual(self.arm.joint("spindle").velocity, 3.0, delta=SETTLED_RATE)
         self.run_for(0.2)
         self.assertAlmostEqual(self.arm.joint("lift").position, 0.5, delta=SETTLED)
-        command.send(JointState(name=["press"], position=[1.0], velocity=[1.0], effort=[0.5]))  # as ever an effort
+        # The effort acts, as it does without a servo.
+        command.send(JointState(name=["press"], position=[1.0], velocity=[1.0], effort=[0.5]))
         self.wait_for_press(0.5)
 
     # ---- modes
 
     def test_modes_are_switched_and_come_back(self):
-        self.run_for(2.0)  # until it stands: the velocity of now is held
+        self.run_for(2.0)  # until it is at rest, because a switch holds the present velocity
         answer = self.arm.switch_mode(names=["lift", "spindle"], modes=["velocity", "effort"])
         self.assertTrue(answer.success, answer.message)
         self.run_for(0.5)
@@ -141,7 +145,7 @@ class Servos(unittest.TestCase):
         self.assertAlmostEqual(self.arm.joint("lift").velocity, 0.1, delta=SETTLED_RATE)
         before = self.arm.joint("lift").effort
         self.assertTrue(self.arm.switch_mode(names=["lift"], modes=["position"]).success)
-        self.run_for(STEP)  # in which the effort changes by kp times the way, and not by kd times 0.1 m/s
+        self.run_for(STEP)  # the effort changes by kp times the displacement, not by kd times 0.1 m/s
         self.assertAlmostEqual(self.arm.joint("lift").effort, before, delta=2 * 400 * 0.1 * STEP)
         self.run_for(1.5)  # longer than the timeout of the velocity
         held = self.arm.joint("lift").position
@@ -149,7 +153,7 @@ class Servos(unittest.TestCase):
         self.run_for(0.5)
         self.assertAlmostEqual(self.arm.joint("lift").position, held, delta=SETTLED)
         self.arm.reset()
-        self.set_points.send(JointState(name=["lift"], position=[0.5]))  # the scene's mode again
+        self.set_points.send(JointState(name=["lift"], position=[0.5]))  # the scene's mode applies again
         self.wait_for_effort("lift", lambda effort: effort > 50)
 
     def test_modes_that_are_not_there_are_refused_whole(self):
@@ -178,14 +182,14 @@ class Servos(unittest.TestCase):
         self.run_for(0.1)
         self.assertEqual(self.arm.joint("press").effort, 0.0)
         self.assertEqual(self.arm.joint("lift").effort, 0.0)
-        self.assertGreater(self.arm.joint("lift").position, moved)  # it coasts
+        self.assertGreater(self.arm.joint("lift").position, moved)  # it moves on freely
         self.arm.reset()
         self.run_for(0.1)
         self.assertEqual(self.arm.joint("lift").effort, 0.0)  # a reset does not release it
         self.stop.send(False)
         self.wait_for_effort("lift", lambda effort: effort > 1)
         self.run_for(1.2)
-        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)  # the scene's own again
+        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)  # the scene's own set point again
         self.assertEqual(self.arm.joint("press").effort, 0.0)
 
     def test_state_saved_during_a_stop_runs_without_it(self):
@@ -200,12 +204,12 @@ class Servos(unittest.TestCase):
             self.wait_for_effort("lift", lambda effort: effort != 0)
             self.assertTrue(self.arm.load_state(state).success)
         self.run_for(STEP)
-        self.assertEqual(self.arm.joint("press").effort, 1.0)  # its set point held when the state was saved
+        self.assertEqual(self.arm.joint("press").effort, 1.0)  # the set point that was valid when the state was saved
 
     # ---- bad set points
 
     def assert_refused(self, bad):
-        """Messages of one topic arrive in order: once the good one is there, the bad one has been dealt with."""
+        """Messages of a topic arrive in order: when the valid set point acts, the invalid one has been handled."""
         self.good_effort += 0.125
         self.set_points.send(bad)
         self.set_points.send(JointState(name=["press"], effort=[self.good_effort]))
@@ -233,7 +237,16 @@ class Servos(unittest.TestCase):
         warnings = warnings_of_flood(lambda: self.set_points.send(JointState(name=["loose"], position=[1.0])))
         self.assertEqual(len(warnings), 1)
         self.assertIn("joint_set_points", warnings[0])
-        self.assertIn("'loose' has no servo", warnings[0])
+        self.assertIn("'loose' has no servo: write <servo ", warnings[0])
+
+    # ---- set points beyond limits
+
+    def test_warns_once_of_a_burst_beyond_a_limit(self):
+        send = lambda: self.set_points.send(JointState(name=["lift"], position=[1.5]))
+        self.assertEqual(warnings_of_flood(send, "limit"),
+                         ["joint 'lift' is sent to 1.5, beyond its upper limit 1, where its stop holds it"])
+        self.run_for(1.0)
+        self.assertAlmostEqual(self.arm.joint("lift").position, 1.0, delta=0.01)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the tests of the node share: the node's services and topics as one object."""
+"""Helpers of the node's tests: the node's services and topics as one object."""
 
 import time
 
@@ -14,7 +14,7 @@ PATIENCE = 10.0  # s, wall time
 
 
 def wait_until(condition, what, patience=PATIENCE):
-    """Waits for a condition in wall time; ROS time may stand still."""
+    """Wait for a condition in wall time, because ROS time may stand still."""
     end = time.monotonic() + patience
     while not condition():
         if time.monotonic() > end:
@@ -53,7 +53,8 @@ class SimulatedArm:
         return self.call_apply_wrench(link=link, point=Point(*at), wrench=Wrench(Vector3(*force), Vector3(*moment)),
                                       frame=frame, start=start, duration=rospy.Duration.from_sec(duration))
 
-    # While the simulation is paused, a new subscriber gets what was sent before the last service answered.
+    # While the simulation is paused, a new subscriber gets the messages that were sent before the last service
+    # returned.
     def status(self):
         return rospy.wait_for_message(self.namespace + "/flexarm/status", SimulatorStatus, PATIENCE)
 
@@ -79,20 +80,24 @@ def force_command(names, efforts, seconds=0.0):
     return JointForceCommand(names=names, efforts=efforts, duration=rospy.Duration.from_sec(seconds))
 
 
-def warnings_of_flood(send):
-    """The texts of the node's warnings of refused commands while `send` is called fifty times."""
+def warnings_during(act, word):
+    """Return the texts of the node's warnings that contain `word`, while `act` is called."""
     warnings = []
 
     def receive(log):
-        if "refused" in log.msg:
+        if word in log.msg:
             warnings.append(log.msg)
 
     subscriber = rospy.Subscriber("/rosout", Log, receive)
-    time.sleep(1.2)  # those of other tests are past
+    time.sleep(1.2)  # until warnings of other tests have passed
     del warnings[:]
-    for _ in range(50):
-        send()
+    act()
     wait_until(lambda: warnings, "a warning")
     time.sleep(0.3)
     subscriber.unregister()
     return warnings
+
+
+def warnings_of_flood(send, word="refused"):
+    """The same, while `send` is called fifty times."""
+    return warnings_during(lambda: [send() for _ in range(50)], word)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""scripts/soak_report.py sees what must not happen: lost memory, deaths, failed steps, numbers that are not finite."""
+"""Tests that scripts/soak_report.py detects faults: memory leaks, crashes, failed steps, numbers that are not
+finite."""
 
 import os
 import sys
@@ -19,7 +20,7 @@ def sample(wall, memory):
 
 
 def samples(memory):
-    """One a second; memory: a function of the wall time."""
+    """Return one sample per second. memory: a function of the wall time."""
     return [sample(float(wall), memory(wall)) for wall in range(1, SECONDS + 1)]
 
 
@@ -38,7 +39,7 @@ class Faults(unittest.TestCase):
         self.assertEqual(soak_report.find_faults(self.STEADY, {}, [], died=False), [])
 
     def test_a_leak(self):
-        lost = 64 * 100 / 2**20  # MiB a second: 64 bytes with each message of 100 Hz
+        lost = 64 * 100 / 2**20  # MiB per second: 64 bytes per message at 100 Hz
         leak = samples(lambda wall: 20 + lost * wall)
         (fault,) = soak_report.find_faults(leak, {}, [], died=False)
         self.assertIn("memory grew", fault)
@@ -62,7 +63,7 @@ class Account(unittest.TestCase):
     def test_counts_from_the_last_reset(self):
         account = soak_report.EnergyAccount()
         account.add(status(0.0, 5.0))
-        account.add(status(1.0, 6.0, work=3.0, dissipated=2.5))  # half a joule from nowhere
+        account.add(status(1.0, 6.0, work=3.0, dissipated=2.5))  # half a joule of energy without a cause
         self.assertEqual(account.take_largest(), 0.5)
         account.add(status(0.0, 7.0))
         account.add(status(1.0, 8.0, work=1.0))

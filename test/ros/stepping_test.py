@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Every step is told of once, evenly stamped; in lock step, commands alone make steps, and determine every bit."""
+"""Tests that every step is published once with even stamps, and that in lock step only commands make steps, with
+reproducible bits."""
 
 import time
 import unittest
@@ -12,7 +13,7 @@ from sensor_msgs.msg import JointState
 from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-STEP = 1000000  # ns, of the demo
+STEP = 1000000  # ns, of the demo scene
 
 
 class Log:
@@ -40,7 +41,7 @@ class Paced(unittest.TestCase):
         self.assertGreater(made, 1000)
         wait_until(lambda: len(log.messages) >= made, "a message of each step")
         self.assertEqual(len(log.messages), made)
-        # Whatever delays a step or a message; steps that were dropped, where the machine is overloaded, leave gaps.
+        # Delays of steps or messages do not change stamps. Steps that are dropped on an overloaded machine leave gaps.
         stamps = [message.header.stamp.to_nsec() for message in log.messages]
         gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertEqual({gap % STEP for gap in gaps}, {0})
@@ -60,7 +61,8 @@ class Paced(unittest.TestCase):
         log = Log("/slow/joint_states", JointState)
         wait_until(lambda: len(log.messages) > 100, "a hundred messages")
         stamps = [message.header.stamp.to_nsec() for message in log.messages]
-        # Steps of 1 ms at a quarter of the clock's speed; of them as many as make 100 Hz of stamps or less.
+        # Steps of 1 ms at a quarter of the clock's speed. A message is sent every so many steps that stamps have a rate
+        # of at most 100 Hz.
         self.assertEqual({(later - earlier) % (4 * STEP) for earlier, later in zip(stamps, stamps[1:])}, {0})
         self.assertLess(abs(log.messages[-1].header.stamp.to_sec() - time.time()), 2)
 
@@ -79,7 +81,7 @@ class Paced(unittest.TestCase):
 
 class LockStep(unittest.TestCase):
     def states_of_run(self, arm, force, pause):
-        """After each of some commanded steps, with such pauses between them [s]."""
+        """Return the states after each of several commanded steps, with these pauses between them [s]."""
         arm.reset()
         log = Log("/lock_step/joint_states", JointState)
         wait_until(lambda: log.messages, "the state that waits for a command")

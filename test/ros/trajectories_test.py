@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Joints follow trajectories, from the topic and from the action; what cannot be followed is refused."""
+"""Tests that joints follow trajectories from the topic and from the action, and that impossible trajectories are
+refused."""
 
 import math
 import time
@@ -12,16 +13,17 @@ from actionlib_msgs.msg import GoalStatus
 from flexarm.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal, FollowJointTrajectoryResult
 from flexarm.msg import JointTolerance
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, wait_until
+from simulated_arm import CommandTopic, SimulatedArm, wait_until, warnings_during
 from std_msgs.msg import Bool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-# Both servos are critically damped: of a set point with the acceleration a they lag by at most max |a| / RATE^2, as
-# nothing of their response to a force is negative.
+# Both servos are critically damped, so their impulse response is never negative. So they lag behind a set point with
+# the acceleration a by at most max |a| / RATE^2.
 RATE = 20.0  # 1/s
-# Half a step's way is missing where a message is of a moment within it; far above Newton's tolerance.
+# Tolerance for positions, far above Newton's tolerance. (A message may describe an instant within a step. Then its
+# position differs by up to half of the step's travel.)
 SLACK = 1e-6  # m or rad
-SETTLED = 1.0  # s; exp(-20) is left
+SETTLED = 1.0  # s; after this exp(-20) is left
 Result = FollowJointTrajectoryResult
 
 
@@ -31,13 +33,13 @@ def point(seconds, *positions, velocities=(), accelerations=()):
 
 
 def smooth(seconds, *positions):
-    """A point at which all rest: the way there is a polynomial of degree 5."""
+    """Return a point at which all joints rest. The path to it is a polynomial of degree 5."""
     rest = [0.0] * len(positions)
     return point(seconds, *positions, velocities=rest, accelerations=rest)
 
 
 def largest_acceleration(way, seconds):
-    """Of a polynomial of degree 5 from rest to rest."""
+    """Return the largest acceleration of a polynomial of degree 5 from rest to rest."""
     return 10 / math.sqrt(3) * abs(way) / seconds**2
 
 
@@ -100,7 +102,7 @@ class Trajectories(unittest.TestCase):
             wait_until(lambda: abs(self.position(name) - position) < SLACK, f"{name} to come to {position}")
             self.assertLess(abs(self.velocity(name)), 1e-3)
 
-    # ---- what is followed
+    # ---- trajectories that are followed
 
     def test_follows_within_the_formula(self):
         self.send(["lift", "turn"], smooth(0.5, 0.1, -0.3), smooth(1.0, 0.0, 0.5),
@@ -127,7 +129,8 @@ class Trajectories(unittest.TestCase):
         wait_until(lambda: replaced, "the end of the first goal")
         self.assertEqual(replaced, [GoalStatus.PREEMPTED])
         wait_until(lambda: other.get_state() == GoalStatus.SUCCEEDED, "the end of the second goal")
-        # From 0.1 to 0.4 m and up to 0.75 m/s to 0.1 m: the polynomial's acceleration stays below 20 m/s^2.
+        # The polynomial leads from 0.1 to 0.4 m, with up to 0.75 m/s, then to 0.1 m. Its acceleration stays below 20
+        # m/s^2.
         self.assertLess(self.largest_error(0), 20 / RATE**2)
         self.assert_rests_at(lift=0.1)
 
@@ -157,9 +160,9 @@ class Trajectories(unittest.TestCase):
         wait_until(lambda: self.position("lift") > 0.05, "the way")
         self.addCleanup(self.arm.resume)
         self.arm.pause()
-        time.sleep(0.3)  # what was sent before arrives
+        time.sleep(0.3)  # until messages that were sent before have arrived
         held, count = self.position("lift"), len(self.feedback)
-        time.sleep(1.5)  # longer than what is left of it
+        time.sleep(1.5)  # longer than the rest of the trajectory
         self.assertEqual(self.position("lift"), held)
         self.assertEqual(len(self.feedback), count)
         self.assertEqual(self.client.get_state(), GoalStatus.ACTIVE)
@@ -168,7 +171,7 @@ class Trajectories(unittest.TestCase):
         self.assertGreater(len(self.feedback), count)
         self.assert_rests_at(lift=0.4)
 
-    # ---- what stops it
+    # ---- events that stop a trajectory
 
     def test_cancel_holds(self):
         self.send(["lift"], smooth(2.0, 1.0))
@@ -192,7 +195,7 @@ class Trajectories(unittest.TestCase):
     def test_a_goal_without_points_stops_all_whatever_it_names(self):
         self.topic.send(JointTrajectory(joint_names=["lift"], points=[smooth(2.0, 1.0)]))
         wait_until(lambda: self.position("lift") > 0.1, "the way")
-        # Of 'turn', which does not move: it is far closer than 'lift' can be to its way while it stops.
+        # The tolerances are those of 'turn', which does not move. While 'lift' stops, it could not satisfy them.
         self.send(["turn", "lift"], path=[("turn", 1e-9)], at_end=[("turn", 1e-9)])
         self.wait_for_end(GoalStatus.SUCCEEDED, Result.SUCCESSFUL)
         wait_until(lambda: abs(self.velocity("lift")) < 1e-5, "the stop")
@@ -207,7 +210,7 @@ class Trajectories(unittest.TestCase):
         self.assertLess(self.position("lift"), 0.4)
 
     def test_not_at_its_goal_it_is_aborted(self):
-        # A cubic ends with an acceleration, of which the lag is left.
+        # A cubic ends with an acceleration, which leaves a lag.
         end = point(0.2, 0.3, velocities=[0.0])
         self.send(["lift"], end, at_end=[("lift", 1e-4)], patience=0.01)
         self.wait_for_end(GoalStatus.ABORTED, Result.GOAL_TOLERANCE_VIOLATED, "'lift' is not at its goal")
@@ -238,14 +241,23 @@ class Trajectories(unittest.TestCase):
         self.arm.reset()
         self.wait_for_end(GoalStatus.ABORTED, told="another state")
 
-    # ---- what is refused
+    def test_beyond_limits_it_is_followed_with_a_warning(self):
+        goal = self.goal(["turn", "lift"], smooth(5.0, 0.1, -10.5), smooth(10.0, 0.0, -10.6))
+        self.assertEqual(warnings_during(lambda: self.client.send_goal(goal), "limit"),
+                         ["joint 'lift' is sent to -10.6, beyond its lower limit -10, where its stop holds it"])
+        self.client.cancel_goal()
+        wait_until(lambda: self.client.get_state() == GoalStatus.PREEMPTED, "the end of the goal")
+
+    # ---- trajectories that are refused
 
     def assert_rejected(self, code, told, *args, **fields):
         self.send(*args, **fields)
         self.wait_for_end(GoalStatus.REJECTED, code, told)
 
     def test_joints_that_cannot_follow_are_rejected(self):
-        for name, told in (("nose", "no joint coordinate 'nose'"), ("loose", "no servo"), ("spindle", "not in mode")):
+        for name, told in (("nose", "no joint coordinate 'nose'; the scene has loose, "),
+                           ("loose", "no servo: write <servo joint=\"loose\" mode=\"position\""),
+                           ("spindle", "not in mode")):
             self.assert_rejected(Result.INVALID_JOINTS, told, ["lift", name], smooth(0.2, 0.1, 0.1))
 
     def test_bad_trajectories_are_rejected(self):
@@ -255,7 +267,7 @@ class Trajectories(unittest.TestCase):
             self.assert_rejected(Result.INVALID_GOAL, told, ["lift", "turn"], *points)
         self.assert_rejected(Result.INVALID_GOAL, "'spindle'", ["lift"], point(0.2, 0.1), path=[("spindle", 0.1)])
         past = rospy.Time.now() - rospy.Duration(1.0)
-        self.assert_rejected(Result.OLD_HEADER_TIMESTAMP, "past by", ["lift"], point(0.2, 0.1), stamp=past)
+        self.assert_rejected(Result.OLD_HEADER_TIMESTAMP, "its last point was", ["lift"], point(0.2, 0.1), stamp=past)
         self.assertLess(abs(self.position("lift")), 1e-6)
 
 

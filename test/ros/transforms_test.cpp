@@ -1,4 +1,4 @@
-/// What the node publishes of a bent arm against the same simulation without ROS, which is deterministic.
+/// Tests the messages of a bent arm against the same simulation without ROS, which is deterministic.
 
 #include <flexarm/BeamStateArray.h>
 #include <flexarm/SimulatorStatus.h>
@@ -24,7 +24,7 @@ namespace flexarm {
 namespace {
 
 constexpr int kSteps = 200;
-/// A chain of six frames, each a product of unit quaternions and of lengths of about a metre.
+/// Tolerance: a chain of six frames, each a product of unit quaternions and lengths of about 1 m.
 constexpr double kRoundOff = 100 * std::numeric_limits<double>::epsilon();
 const ros::Duration kPatience(10);
 
@@ -46,7 +46,7 @@ Simulation make_simulation() {
   return Simulation(*std::move(result.scene));
 }
 
-/// The node, which is launched paused, and a twin of its simulation, both `kSteps` steps after the start.
+/// The node, launched paused, and a twin of its simulation, both `kSteps` steps after the start.
 class BentArm : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -75,7 +75,7 @@ class BentArm : public ::testing::Test {
     delete twin_;
   }
 
-  /// The state under test: a paused simulation sends it to every new subscriber.
+  /// The joint states. A paused simulation sends them to every new subscriber.
   static sensor_msgs::JointState joint_states() {
     const auto message = ros::topic::waitForMessage<sensor_msgs::JointState>("/joint_states", kPatience);
     return message ? *message : sensor_msgs::JointState();
@@ -120,7 +120,7 @@ TEST_F(BentArm, TransformsAgreeWithTheJointStates) {
   const auto elbow = std::find(joints.name.begin(), joints.name.end(), "elbow");
   ASSERT_NE(elbow, joints.name.end());
   const double angle = joints.position.at(elbow - joints.name.begin());
-  EXPECT_GT(std::abs(angle), 0.01);  // it has swung: what follows would hold of an arm that stands still, too
+  EXPECT_GT(std::abs(angle), 0.01);  // it has swung; otherwise the next check would also hold for an arm at rest
   const Quaternion expected(Eigen::AngleAxisd(angle, Vector3::UnitY()));
   expect_equal(to_pose(tip_to_forearm.transform), {Vector3::Zero(), expected}, "forearm on the boom's tip");
 }
@@ -177,7 +177,8 @@ TEST_F(BentArm, MarkersLieAroundTheDeformedCentreline) {
   EXPECT_LE(largest_distance, twin_->beam_radius(boom_) + kRoundOff);
 }
 
-/// Largest strain at the edge of the boom: the same measure as the markers', from bending alone, which is nearly all.
+/// Largest strain at the surface of the boom by bending alone. The markers show the same measure; bending is nearly all
+/// of it.
 double bending_strain(const std::vector<BeamPoint>& points, double radius) {
   double largest = 0;
   for (const BeamPoint& point : points) largest = std::max(largest, radius * point.strain.tail<2>().norm());
@@ -196,7 +197,7 @@ TEST_F(BentArm, LegendNamesTheLargestStrain) {
     const double number = std::strtod(marker.text.c_str(), &end);
     if (std::string(end) == " %") largest = std::max(largest, number / 100);
   }
-  EXPECT_GE(ids.size(), 5u);  // the bar, three numbers, what they are; then arrows
+  EXPECT_GE(ids.size(), 5u);  // the bar, three numbers, their meaning; then arrows
   std::vector<BeamPoint> points;
   twin_->beam_points(boom_, 3, points);
   const double expected = bending_strain(points, twin_->beam_radius(boom_));
@@ -205,7 +206,7 @@ TEST_F(BentArm, LegendNamesTheLargestStrain) {
   EXPECT_NEAR(largest, expected, 0.1 * expected);
 }
 
-// What needs a simulation that runs, fails or lags behind is in services_test.py and process_test.py.
+// services_test.py and process_test.py test the status of a simulation that runs, fails or lags behind.
 TEST_F(BentArm, StatusIsTheSimulations) {
   const auto status = ros::topic::waitForMessage<flexarm::SimulatorStatus>("/flexarm/status", kPatience);
   ASSERT_TRUE(status);

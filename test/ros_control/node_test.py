@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The node for ros_control is the clock, keeps its pace, pauses, and says what is wrong with its parameters."""
+"""Tests the node for ros_control: it is the ROS clock, keeps its pace, pauses, and reports invalid parameters."""
 
 import subprocess
 import time
@@ -23,7 +23,7 @@ class Node(unittest.TestCase):
             service.wait_for_service(PATIENCE)
 
     def passed(self, seconds):
-        """Simulated time while so much wall time passes."""
+        """Return the simulated time that passes in this wall time."""
         before = self.times[-1]
         time.sleep(seconds)
         return self.times[-1] - before
@@ -48,7 +48,7 @@ class Node(unittest.TestCase):
         self.assertEqual(self.times, sorted(set(self.times)), "time goes on, whatever is reset")
 
     def refusal(self, *parameters):
-        """What the node says before it ends."""
+        """Return the message with which the node ends."""
         command = ["rosrun", "flexarm", "test_ros_control_node", "__name:=refused", *parameters]
         result = subprocess.run(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE, encoding="utf-8", check=False

@@ -1,5 +1,5 @@
-// What controllers of ros_control see of a simulation, and what comes of what they command. The classes of ros_control
-// are stand-ins here.
+// Tests the robot that controllers of ros_control see: states, and the effects of commands. The classes of ros_control
+// are stand-ins.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -28,8 +28,8 @@ const char* const kPosition = "hardware_interface::PositionJointInterface";
 const char* const kPosVel = "hardware_interface::PosVelJointInterface";
 const char* const kPosVelAcc = "hardware_interface::PosVelAccJointInterface";
 
-/// Blocks of 2 kg on rails along x, weightless: `free` without a servo, `driven` with all modes, `held` with one of
-/// positions, `led` that mimics `free`.
+/// Blocks of 2 kg on rails along x, without gravity: `free` has no servo, `driven` a servo with all modes, `held` one
+/// for positions, and `led` mimics `free`.
 std::string benches() {
   std::string text = "<robot name=\"benches\"><link name=\"world\"/>";
   for (const std::string name : {"free", "driven", "held", "led"})
@@ -58,7 +58,7 @@ ControllerInfo claim(const std::string& interface, const std::string& joint) {
   return {"test", "test/Controller", {{interface, {joint}}}};
 }
 
-/// An arm, and the loop that a controller is in.
+/// A simulated robot in a control loop with a controller.
 struct Rig {
   explicit Rig(int steps = 1)
       : simulation(simulate(benches())),
@@ -69,7 +69,7 @@ struct Rig {
           if (controller) controller(time.toSec() - kStep);
         }) {}
 
-  /// Takes over a joint, as a controller manager does when a controller starts and another one stops.
+  /// Claims a joint, as a controller manager does when one controller starts and another one stops.
   bool switch_to(const std::list<ControllerInfo>& started, const std::list<ControllerInfo>& stopped = {}) {
     if (!robot.prepareSwitch(started, stopped)) return false;
     robot.doSwitch(started, stopped);
@@ -91,7 +91,7 @@ struct Rig {
   SimulatedRobot robot;
   double last_period = 0;
   int restarts = 0;
-  std::function<void(double time)> controller;  ///< `time`: of the simulation [s]
+  std::function<void(double time)> controller;  ///< simulation time [s]
   ControlLoop loop;
 };
 
@@ -163,12 +163,13 @@ TEST(SimulatedRobot, ServoFollowsAPosition) {
 }
 
 TEST(SimulatedRobot, PositionsAloneLagAndThoseWithRatesDoNot) {
-  // Of a ramp with kp e + kd de/dt, whose rate the servo does not know: kd / kp times the velocity behind.
+  // The set point is a ramp. The servo's kp e + kd de/dt does not know its rate, so it lags by kd / kp times the
+  // velocity.
   Rig rig;
   ASSERT_TRUE(rig.switch_to({claim(kPosition, "driven")}));
   rig.controller = [&, position = rig.handle<Positions>("driven")](double time) mutable { position.setCommand(time); };
   rig.run(3);
-  // The command of a cycle is that of its beginning, and the error of a step is that in its middle.
+  // A cycle uses the command of its beginning. The error is that in the middle of a step.
   EXPECT_NEAR(rig.position("driven"), rig.simulation.time() - kStep / 2 - 80.0 / 800, 1e-6);
 
   for (const int steps : {1, 4}) {
@@ -190,7 +191,7 @@ TEST(SimulatedRobot, PositionsWithRateAndAccelerationMoveOnWithinACycle) {
       target.setCommand(time * time, 2 * time, 2);
     };
     rig.run(3);
-    // Only the force that accelerates it is left to the error: m a / kp.
+    // The remaining error is that of the accelerating force: m a / kp.
     EXPECT_NEAR(rig.position("driven"), std::pow(rig.simulation.time(), 2) - kMass * 2 / 800, 1e-5);
     EXPECT_NEAR(rig.velocity("driven"), 2 * rig.simulation.time(), 1e-5) << "steps in a cycle: " << steps;
   }
@@ -204,7 +205,7 @@ TEST(SimulatedRobot, SwitchesModesWithoutABumpAndStandsWhenLetGo) {
   rig.run(1);
   EXPECT_NEAR(rig.velocity("driven"), 0.5, 1e-6);
 
-  // Before its controller has commanded anything, a position holds on to what there was.
+  // Until its controller commands something, a position servo holds the joint.
   rig.controller = nullptr;
   ASSERT_TRUE(rig.switch_to({claim(kPosition, "driven")}, {claim(kVelocity, "driven")}));
   EXPECT_EQ(rig.simulation.servo_mode(1), ServoMode::Position);
@@ -253,7 +254,7 @@ TEST(SimulatedRobot, RefusesWhatTheSceneCannotServe) {
   for (const char* interface : {kPosition, kPosVel, kPosVelAcc, kEffort}) EXPECT_EQ(fault(interface, "held"), "");
   EXPECT_EQ(fault("hardware_interface::JointStateInterface", "led"), "");
 
-  // Who switches all the same changes nothing.
+  // A switch that was not prepared changes nothing.
   rig.robot.doSwitch({claim(kPosition, "free"), claim(kVelocity, "held")}, {});
   EXPECT_EQ(rig.simulation.servo_mode(2), ServoMode::Position);
   rig.run(2);

@@ -1,5 +1,6 @@
-/// The good scene spoilt in one place, and all that is said about it, word for word: broken_scenes.tsv. Each of its
-/// lines has what is replaced, by what, and the findings, separated by tabs and the findings by " | ".
+/// Tests the good scene with one error at a time: all messages must be as expected, word for word. Each line of
+/// broken_scenes.tsv has the replaced text, its replacement, and the messages, separated by tabs. Messages are
+/// separated by " | ".
 
 #include <fstream>
 #include <set>

@@ -1,4 +1,4 @@
-// <clearance>: what joints with play are read as, and what is wrong with those that close loops.
+// Tests <clearance>: how joints with play are read, and the errors of those that close loops.
 #include <gtest/gtest.h>
 
 #include "scene/scene_text.h"

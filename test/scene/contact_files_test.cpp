@@ -1,4 +1,4 @@
-// What contacts take from other files and programs: SRDFs, Gazebo's surfaces, files by their URLs.
+// Tests what contacts take from other files and programs: SRDFs, Gazebo's surfaces, files given by URLs.
 #include <filesystem>
 #include <fstream>
 
@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> pairs_of(const ReadResult& resu
   return out;
 }
 
-// Those of links that are not there, and those that the scene speaks of itself, are left out.
+// Pairs with a missing link, and pairs for which the scene itself has a contact, are left out.
 TEST(Srdf, DisablesPairs) {
   written(folder() / "r.srdf", R"(<?xml version="1.0"?><robot name="r"><group name="arm"/>
     <disable_collisions link1="a" link2="b" reason="Never"/><disable_collisions link1="b" link2="a" reason="Adjacent"/>

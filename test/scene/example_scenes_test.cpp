@@ -1,3 +1,5 @@
+/// Tests that the example scenes are read without any message, are valid URDF for other tools, and are those of the
+/// guide.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-/// What files of other programs have that is not flexarm's: it is read with a warning wherever nothing is left open.
+/// Tests files with elements of other programs. They are read, with a warning where the meaning is clear.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 namespace flexarm::scene {
 namespace {
 
-/// The world, and under it the bodies a and b, as the scene has them by `joints`, each line from line 2.
+/// Returns a scene with the world and the bodies a and b below it; `more` has their joints and more, from line 2 on.
 std::string scene_of(const std::string& more) {
   std::string text = R"(<robot name="r"><link name="world"/>)";
   for (const std::string name : {"a", "b"})
@@ -30,7 +30,7 @@ std::string limit(double lower, double upper) {
          R"(" effort="1" velocity="1"/>)";
 }
 
-/// All that is said, which is as many warnings.
+/// Returns all messages, and checks that all of them are warnings.
 std::vector<std::string> said(const ReadResult& result) {
   EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
   std::vector<std::string> texts;
@@ -57,7 +57,7 @@ TEST(ForeignFiles, LimitsBelowZeroAreNone) {
 
 TEST(ForeignFiles, WhatHasNoEffectIsNotJudged) {
   const std::string end = joint_to("j", "b", "continuous", "");
-  EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "fixed", R"(<axis xzy="0 0 1"/><axis xyz="2"/>)") + end))), Texts());
+  EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "fixed", R"(<axis xyz="0 0"/><axis xyz="2"/>)") + end))), Texts());
   EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "floating", R"(<axis xyz="0 0 z"/>)") + end))), Texts());
   for (const std::string& more :
        {R"(<limit lower="1" upper="x" effort="none" velocity="2"/>)", R"(<dynamics damping="-1" friction="?"/>)"}) {
@@ -105,7 +105,7 @@ TEST(ForeignFiles, LimitsThatAMimicDoesNotKeepAreTold) {
   EXPECT_EQ(gripper(limit(0, 0.02), limit(-0.02, 0), "multiplier=\"-1\""), Texts());
   EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.01\""), Texts());  // 0.01 to 0.05
   EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.02\"").size(), 1u);
-  EXPECT_EQ(gripper(limit(0, 1.571), limit(0, 1.57), "").size(), 0u);  // rounded
+  EXPECT_EQ(gripper(limit(0, 1.571), limit(0, 1.57), "").size(), 0u);  // rounded limits
   const std::string hinge = joint_to("left", "a", "continuous", "");
   EXPECT_EQ(
       said(read(scene_of(hinge + joint_to("right", "b", "revolute", limit(-1, 1) + "<mimic joint=\"left\"/>")))),
@@ -146,12 +146,12 @@ TEST(ForeignFiles, LoopsInsideGazeboAreTold) {
                               "</parent><child>" + child + "</child></joint></gazebo>")));
   };
   const Texts told{
-      "scene.urdf:4: warning: <joint> 'x': closes a loop in Gazebo alone, between the links 'a' and 'b': a "
-      "<loop_joint> of <robot>, which Gazebo overlooks, closes it here"};
+      "scene.urdf:4: warning: <joint> 'x': closes a loop in Gazebo only, between the links 'a' and 'b': a "
+      "<loop_joint> of <robot>, which Gazebo ignores, closes it in flexarm"};
   EXPECT_EQ(inside("a", "b"), told);
   EXPECT_EQ(inside("r::a", " r::b "), told);
   EXPECT_EQ(inside("world", "b"), Texts());  // joint j again
-  EXPECT_EQ(inside("a", "wheel"), Texts());  // to a link that only Gazebo has
+  EXPECT_EQ(inside("a", "wheel"), Texts());  // a link that only Gazebo has
 }
 
 TEST(ForeignFiles, StrangersAreToldOnceWithTheNearestName) {
@@ -159,15 +159,52 @@ TEST(ForeignFiles, StrangersAreToldOnceWithTheNearestName) {
   const auto told = [](const std::string& tag, const std::string& words) {
     return Texts{"scene.urdf:4: warning: <" + tag + "> of robot 'r': has no effect" + words};
   };
-  const std::string unknown = ": no program is known that uses it here";
-  EXPECT_EQ(said_of("<contact/><contact/>"), told("contact", " here: it belongs into <link>"));
+  const std::string unknown = ": no known program uses it here";
+  EXPECT_EQ(said_of("<contact/><contact/>"), told("contact", " here: it belongs in <link>"));
   EXPECT_EQ(said_of("<senser name=\"s\"/>"), told("senser", unknown + "; is <sensor> meant?"));
   EXPECT_EQ(said_of("<spring_ joint=\"i\"/>"), told("spring_", unknown + "; is <spring> meant?"));
   EXPECT_EQ(said_of("<Simulation/>"), told("Simulation", unknown + "; is <simulation> meant?"));
   EXPECT_EQ(said_of("<create/>"), told("create", unknown));
-  EXPECT_EQ(said_of("<axis/>"), told("axis", " here: it belongs into <joint>"));
+  EXPECT_EQ(said_of("<axis/>"), told("axis", " here: it belongs in <joint>"));
   EXPECT_EQ(said_of("<gazebo/><transmission/><material name=\"m\"/><mujoco/><ros2_control/><group/><drake:x/>").size(),
-            1u);  // urdfdom wants to know the material's color
+            1u);  // the warning: urdfdom expects the material to have a color
+}
+
+TEST(ForeignFiles, MisspeltWordsOfUrdfAreToldOnceWithTheNearestOne) {
+  const auto said_of = [](const std::string& in_joint, const std::string& more) {
+    return said(read(scene_of(joint_to("i", "a", "continuous", in_joint + in_joint) +
+                              joint_to("j", "b", "continuous", in_joint) + more)));
+  };
+  const auto child = [](const std::string& name, const std::string& meant) {
+    return Texts{"scene.urdf:2: warning: <" + name + "> of joint 'i': has no effect: <joint> has no such child; is <" +
+                 meant + "> meant?"};
+  };
+  const auto attribute = [](const std::string& element, const std::string& name, const std::string& meant) {
+    return Texts{"scene.urdf:2: warning: <" + element + "> of joint 'i': unknown attribute; is '" + meant +
+                 "' meant?, got '" + name + "'"};
+  };
+  EXPECT_EQ(said_of("<orign xyz=\"1 0 0\"/>", ""), child("orign", "origin"));
+  EXPECT_EQ(said_of("<axs/>", ""), child("axs", "axis"));
+  EXPECT_EQ(said_of("<Limit/>", ""), child("Limit", "limit"));
+  EXPECT_EQ(said_of("<mimik joint=\"j\"/>", ""), child("mimik", "mimic"));
+  const Texts swapped = said(read(scene_of(joint_to("i", "a", "continuous", "<origin xzy=\"1 0 0\"/>") +
+                                           joint_to("j", "b", "continuous", "<origin xzy=\"1 0 0\"/>"))));
+  EXPECT_EQ(swapped, attribute("origin", "xzy", "xyz"));
+  EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "continuous", "<dynamics friction=\"1\" dampng=\"1\"/>") +
+                               joint_to("j", "b", "continuous", "")))),
+            attribute("dynamics", "dampng", "damping"));
+  const std::string link = joint_to("k", "c", "fixed", "") +
+                           "<link name=\"c\"><inertal/><visual><orgin/><geometry><sphere radus=\"1\" "
+                           "radius=\"1\"/></geometry></visual></link>";
+  EXPECT_EQ(
+      said_of("", link),
+      (Texts{"scene.urdf:5: warning: <inertal> of link 'c': has no effect: <link> has no such child; is <inertial> "
+             "meant?",
+             "scene.urdf:5: warning: <orgin> of link 'c': has no effect: <visual> has no such child; is <origin> "
+             "meant?",
+             "scene.urdf:5: warning: <sphere> of link 'c': unknown attribute; is 'radius' meant?, got 'radus'"}));
+  // A word that is not close to any word of URDF, or has a namespace, belongs to another program.
+  EXPECT_EQ(said_of("<hardware interface=\"x\"/><drake:axs/>", "").size(), 0u);
 }
 
 TEST(ForeignFiles, UrdfdomRefusesOnlyWhatItRefuses) {

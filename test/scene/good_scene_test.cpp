@@ -1,3 +1,4 @@
+/// Tests that each element of a good scene is read into the right members of its description.
 #include <cmath>
 #include <fstream>
 
@@ -269,7 +270,7 @@ TEST(GoodScene, SensorsOfContactsHaveGroups) {
   EXPECT_EQ(bumper.group, (std::vector<std::string>{"tip", "floor"}));
 }
 
-// One with a <parent> is as URDF once proposed it.
+// A <sensor> with a <parent> is in the form that was once proposed for URDF. It belongs to other programs.
 TEST(GoodScene, SensorsOfOthersAreLeftAlone) {
   const ReadResult result = read(
       good_scene_with("</robot>", "<sensor name=\"camera\"> <parent link=\"hand\"/> <camera/> </sensor> </robot>"));
@@ -373,7 +374,7 @@ TEST(GoodScene, GearOfATransmission) {
   EXPECT_EQ(result.scene->drives[0].gear, 50);
 }
 
-// Exporters write a reduction of 1 for every joint, whatever its gear is.
+// Exporters write a reduction of 1 for every joint, whatever its gear is. So an explicit gear takes precedence.
 TEST(GoodScene, AnExplicitGearGoesBeforeThatOfATransmission) {
   const ReadResult result = read(good_scene_with("gear=\"50\" ", "gear=\"60\" "));
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);

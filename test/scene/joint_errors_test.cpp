@@ -1,9 +1,11 @@
+/// Tests errors and warnings about joints and about the tree that they form.
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
 namespace {
 
-/// Links a, b, c under the root link w, with these joints; each on a line of its own from line 2.
+/// Returns a scene with links a, b, c and the root link w, with these joints. Each joint is on a line of its own from
+/// line 2 on.
 std::string tree(const std::string& joints) {
   return R"(<robot name="r"><link name="w"/><link name="a"/><link name="b"/><link name="c"/>)"
          "\n" +
@@ -56,7 +58,7 @@ TEST(JointErrors, WhatOnlyOtherProgramsNeedIsAWarning) {
 TEST(JointErrors, WhatComesTwiceAlikeIsAWarning) {
   const std::string axis = R"(<axis xyz="0 0 2"/>)";
   const ReadResult result = read(good_scene_with(axis, axis + axis));
-  expect_warning(result, 9, "<axis> of joint 'shoulder': at most one <axis> is allowed here; the other one is alike");
+  expect_warning(result, 9, "<axis> of joint 'shoulder': at most one <axis> is allowed here; the two are identical");
   EXPECT_EQ(result.diagnostics.size(), 1u);
 }
 
@@ -88,7 +90,7 @@ TEST(JointErrors, Structure) {
 TEST(JointErrors, EqualLimitsAreAWarning) {
   const ReadResult result = read(good_scene_with(R"(lower="-1" upper="2")", ""));
   expect_warning(result, 10, "warning: <limit> of joint 'shoulder': lower and upper are equal");
-  // It starts at 0.3.
+  // The joint starts at 0.3.
   expect_warning(result, 61, "warning: <joint> 'shoulder': starts outside its limits, 0 to 0,");
   EXPECT_EQ(result.diagnostics.size(), 2u);
 }
@@ -128,11 +130,11 @@ TEST(JointErrors, Friction) {
                "nothing turns about an axis here");
   expect_one_error(tree(joint("i", "w", "a", "floating", R"(<friction coefficient="1"/>)") + joint("j", "a", "b") +
                         joint("k", "b", "c")),
-                   2, "spherical and planar joints have no force that presses");
+                   2, "spherical and planar joints have no normal force on which friction could depend");
 }
 
 TEST(JointErrors, Couple) {
-  // The wrist: type floating, axis 0 1 0, a second axis.
+  // The joint is the wrist: type floating, axis 0 1 0, and a second axis.
   const std::string release = R"(<release kind="universal"/>)";
   const auto expect_couple_error = [&](const std::string& couple, const std::string& fragment) {
     expect_error(release, couple, 44, fragment);
@@ -165,7 +167,7 @@ TEST(JointErrors, Couple) {
         R"(<couple kind="cam" direction="1 0 0"><profile kind="eccentric" radius="0.1" offset="0.05"/></couple>)",
         R"(<couple kind="cam" direction="1 0 0"><profile kind="table" theta="0 1 2 4" r="0 1 2 1"/></couple>)"}) {
     const ReadResult result = read(good_scene_with(release, couple));
-    // The scene speaks of two coordinates of the wrist; a couple leaves one.
+    // The scene refers to two coordinates of the wrist. With a couple it has only one.
     for (const Diagnostic& diagnostic : result.diagnostics)
       EXPECT_NE(diagnostic.text().find("wrist/"), std::string::npos) << diagnostic.text();
   }
@@ -185,7 +187,7 @@ TEST(JointErrors, Slide) {
   expect_slide_error(R"(start="0" rotation="universal" line="curved")",
                      "line must be one of elements, smooth, got 'curved'");
   expect_slide_error(R"(start="0" rotation="universal" pitch="0.1")", "only rotation=\"screw\" has a pitch");
-  // The scene's second axis does not suit these, which is said as well.
+  // The scene's second axis does not fit these slides, which causes another message.
   const auto expect_among = [&](const std::string& slide, const std::string& fragment) {
     std::string all;
     for (const Diagnostic& diagnostic : read(good_scene_with(release, slide)).diagnostics)
@@ -219,10 +221,10 @@ TEST(TreeErrors, Shape) {
   expect_one_error(tree(joint("i", "w", "a") + joint("j", "a", "b")), 1,
                    "<link> 'c': must be the child of a joint: a scene has one root link, and that is 'w'");
   expect_one_error(tree(joint("i", "w", "a") + joint("j", "b", "c") + joint("k", "c", "b")), 4,
-                   "joints must form a tree; following the parents leads round in a ring");
+                   "joints must form a tree, but their parents form a ring");
   EXPECT_FALSE(read(tree(joint("i", "w", "a") + joint("j", "b", "b") + joint("k", "w", "c"))).scene);
   expect_one_error(tree(joint("h", "c", "w") + joint("i", "w", "a") + joint("j", "a", "b") + joint("k", "b", "c")), 2,
-                   "leads round in a ring");
+                   "their parents form a ring");
 }
 
 TEST(TreeErrors, Mimic) {

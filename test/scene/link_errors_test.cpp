@@ -1,3 +1,4 @@
+/// Tests errors and warnings about links, inertias and beams.
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
@@ -37,11 +38,11 @@ TEST(LinkErrors, WhatOnlyOtherProgramsUseIsAWarning) {
          "material must contain a name");
   expect(R"(<robot name="arm">)", R"(<robot name="arm" version="3.0">)", 1,
          "<robot>: programs that use urdfdom refuse this file, got");
-  // A line end inside a number's quotes is too much for urdfdom.
+  // urdfdom cannot read a line break inside the quotes of a number.
   expect("iyz=\"0\"", "iyz=\"0\n \"", 14, "<inertial> of link 'upper': programs that use urdfdom cannot read it");
 }
 
-/// urdfdom hands such texts to printf as formats, where %n writes and %s reads anywhere.
+/// urdfdom passes such texts to printf as formats, where %n writes and %s reads at arbitrary places.
 TEST(LinkErrors, PercentSignsAreNoFormats) {
   for (const std::string sign : {"%", "&#37;", "&#x025;"}) {
     SCOPED_TRACE(sign);
@@ -57,7 +58,7 @@ TEST(LinkErrors, NegativeMoments) {
   const auto diagonal = [](const std::string& xx, const std::string& yy, const std::string& zz) {
     return "<inertia ixx=\"" + xx + "\" ixy=\"0\" ixz=\"0\" iyy=\"" + yy + "\" iyz=\"0\" izz=\"" + zz + "\"/>";
   };
-  // Of a mass of 2 kg, a radius of gyration of less than a micrometre is nothing.
+  // For a mass of 2 kg, a radius of gyration below a micrometre counts as zero.
   const double nothing = 2 * 1e-6 * 1e-6;
   const auto text = [&](double factor) { return std::to_string(-factor * nothing * 1e12) + "e-12"; };
   expect_warning(read(good_scene_with(inertia, diagonal(text(0.9), "0", "0"))), 17, "principal moments of inertia");
@@ -66,7 +67,7 @@ TEST(LinkErrors, NegativeMoments) {
 }
 
 TEST(LinkErrors, NegativeMomentsOfALinkThatIsFixedToOthers) {
-  // A mast of 1 kg, 1 m long, fixed to the hull with what its file gives it: J about one axis.
+  // A mast of 1 kg, 1 m long, is joined to the hull. Its file gives the moment of inertia J about one axis.
   const auto scene = [](const std::string& type, const std::string& moment) {
     const auto inertial = [](const std::string& mass, const std::string& xx) {
       return "<inertial><mass value=\"" + mass + "\"/><inertia ixx=\"" + xx +
@@ -78,7 +79,7 @@ TEST(LinkErrors, NegativeMomentsOfALinkThatIsFixedToOthers) {
            "<joint name=\"j\" type=\"" + type + "\"><origin xyz=\"0 0 1\"/><parent link=\"hull\"/>" +
            "<child link=\"mast\"/></joint></robot>";
   };
-  // Together about x: 1 + J + 2 * 1 kg * (1/2 m)^2.
+  // The combined moment about x: 1 + J + 2 * 1 kg * (1/2 m)^2.
   expect_warning(read(scene("fixed", "-1.499")), 2, "principal moments of inertia must be >= 0 (harmless");
   expect_one_error(scene("fixed", "-1.501"), 2, "principal moments of inertia must be >= 0");
   expect_one_error(scene("continuous", "-0.1"), 2, "principal moments of inertia must be >= 0");
@@ -187,7 +188,7 @@ TEST(BeamErrors, SectionMatrix) {
   };
   const std::string unit = "1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1";
   EXPECT_TRUE(read(good_scene_with(section, matrix(unit, unit))).scene);
-  // Mass 1 at d = (0, 0.1, 0.2): -m d^ above, m d^ below.
+  // Mass 1 at d = (0, 0.1, 0.2): the upper right block is -m d^, the lower left one is m d^.
   const std::string offset =
       "1 0 0 0 0.2 -0.1  0 1 0 -0.2 0 0  0 0 1 0.1 0 0  0 -0.2 0.1 1 0 0  0.2 0 0 0 1 0  -0.1 0 0 0 0 1";
   EXPECT_TRUE(read(good_scene_with(section, matrix(unit, offset))).scene);
@@ -205,6 +206,27 @@ TEST(BeamErrors, SectionMatrix) {
   expect_error(section, matrix(unit, with(unit, 1, "0.1")), 55, "inertia must be");
   expect_error(section, matrix(unit, with(unit, 4, "0.1")), 55, "inertia must be");
   expect_error(section, matrix(unit, with(unit, 21, "-1")), 55, "inertia must be");
+}
+
+TEST(BeamWarnings, UnitsThatAreProbablyOthers) {
+  const auto said_of = [](const std::string& length, const std::string& radius, const std::string& young,
+                          const std::string& density) {
+    const ReadResult result = read("<robot name=\"r\"><link name=\"a\">\n<beam><centerline><line to=\"" + length +
+                                   " 0 0\"/></centerline><circle radius=\"" + radius + "\"/><material young=\"" +
+                                   young + "\" poisson=\"0.3\" density=\"" + density + "\"/></beam></link></robot>");
+    EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
+    return to_text(result.diagnostics);
+  };
+  const std::string beam = "scene.urdf:2: warning: <beam> of link 'a': ";
+  EXPECT_EQ(said_of("1", "0.015", "70e9", "2700"), "");
+  for (const char* young : {"70", "7e4"})  // GPa, MPa
+    EXPECT_EQ(said_of("1", "0.015", young, "2700").find(beam + "young = " + young[0]), 0u) << young;
+  EXPECT_EQ(said_of("1", "0.015", "5e4", "1100"), "") << "soft silicone";
+  EXPECT_EQ(said_of("1", "0.015", "70e9", "2.7").find(beam + "density = 2.7 is in kg/m^3"), 0u);
+  EXPECT_EQ(said_of("1", "0.015", "70e9", "1e-3"), "") << "as good as without mass";
+  EXPECT_EQ(said_of("1", "15", "70e9", "2700").find(beam + "is 30 m thick and 1 m long"), 0u);
+  EXPECT_EQ(said_of("1000", "0.015", "70e9", "2700").find(beam + "is 1000 m long and 0.03 m thick"), 0u);
+  EXPECT_EQ(said_of("100", "0.003", "70e9", "2700"), "") << "a rope";
 }
 
 }  // namespace flexarm::scene

@@ -1,14 +1,15 @@
-// <loop_joint>: what it says, and what is wrong with it.
+// Tests <loop_joint>: how it is read, and its errors.
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
 namespace {
 
-/// A portal of a post, a lintel and a second post, whose foot the loop joint holds; from line 7.
+/// Returns a portal of a post, a lintel and a second post, whose foot is held by the loop joint. The loop joint starts
+/// on line 7.
 std::string portal(const std::string& loop, const std::string& simulation = "") {
   return R"(<robot name="portal">
   <link name="world"/> <link name="post"/> <link name="lintel"/>
-  <link name="leg"> <beam> <centerline> <line to="0 0 -1"/> </centerline> <circle radius="0.01"/> <material young="1" poisson="0" density="1"/> </beam> </link>
+  <link name="leg"> <beam> <centerline> <line to="0 0 -1"/> </centerline> <circle radius="0.01"/> <material young="70e9" poisson="0" density="2700"/> </beam> </link>
   <joint name="a" type="continuous"> <parent link="world"/> <child link="post"/> </joint>
   <joint name="b" type="continuous"> <parent link="post"/> <child link="lintel"/> <origin xyz="0 0 1"/> </joint>
   <joint name="c" type="continuous"> <parent link="lintel"/> <child link="leg"/> <origin xyz="1 0 0"/> </joint>
@@ -105,9 +106,10 @@ TEST(LoopJoint, Structure) {
   expect_one_error(portal(loop(name, kLinks + R"(<mimic joint="a"/>)")), 7, "a <loop_joint> cannot have a <mimic>");
   expect_one_error(portal(loop(R"(name="foot" type="floating")", kLinks + R"(<slide start="0"/>)")), 7,
                    "a <loop_joint> cannot have a <slide>");
-  expect_one_error(portal(loop(R"(name="foot" type="floating")", kLinks)), 7, "a <loop_joint> must hold something");
+  expect_one_error(portal(loop(R"(name="foot" type="floating")", kLinks)), 7,
+                   "a <loop_joint> must constrain something");
   expect_one_error(portal(loop(R"(name="foot" type="floating")", kLinks + R"(<release kind="free"/>)")), 7,
-                   "a <loop_joint> must hold something");
+                   "a <loop_joint> must constrain something");
 }
 
 TEST(LoopJoint, Places) {

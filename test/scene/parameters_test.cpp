@@ -1,4 +1,4 @@
-/// Parameters and the expressions of them: what they become, and every way to get them wrong.
+/// Tests parameters and their expressions: their values, and all their errors.
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 namespace flexarm::scene {
 namespace {
 
-/// Parameters at lines 2 to 4, expressions of them in all kinds of elements.
+/// A scene with parameters on lines 2 to 4, and expressions of them in all kinds of elements.
 const std::string kArm = R"x(<robot name="arm">
   <parameter name="length" value="2" min="0.5" max="4"/>
   <parameter name="payload" value="120"/>
@@ -55,7 +55,7 @@ std::string arm_with(const std::string& from, const std::string& to) {
   return text.replace(found, from.size(), to);
 }
 
-/// Expects these findings and no scene.
+/// Expects these messages and no scene.
 void expect_findings(const ReadResult& result, const std::string& expected) {
   EXPECT_FALSE(result.scene);
   EXPECT_EQ(to_text(result.diagnostics), expected + "\n");
@@ -66,7 +66,7 @@ void expect_mass_error(const std::string& value, const std::string& expected) {
                   "scene.urdf:14: <mass> of link 'boom': " + expected);
 }
 
-/// In the place of the first parameter.
+/// Expects errors of these parameters, which start on line 2.
 void expect_parameter_errors(const std::string& parameters, const std::string& expected) {
   expect_findings(read("<robot name=\"r\"> <link name=\"a\"/>\n" + parameters + "</robot>"), expected);
 }
@@ -147,7 +147,7 @@ TEST(Parameters, OtherProgramsKeepTheirExpressions) {
 
 TEST(Parameters, ExpressionsWithoutAValue) {
   expect_mass_error("${payloud/2 + length}",
-                    "'payloud' is no parameter of the scene (length, payload, half), no function, nor pi, got "
+                    "'payloud' is not a parameter of the scene (length, payload, half), no function, nor pi, got "
                     "'${payloud/2 + length}' with length = 2");
   expect_mass_error("${payload/(length - 2*half)}",
                     "an expression must be a finite number, got 'inf' of '${payload/(length - 2*half)}' with payload = "
@@ -174,10 +174,11 @@ TEST(Parameters, ValuesOfExpressionsThatCannotBeAreToldWithTheirOrigin) {
                     "value must be >= 0, got '-118' of '${length - payload}' with length = 2, payload = 120");
   expect_mass_error("${length} ${half}",
                     "value must be a finite number, got '2 1' of '${length} ${half}' with length = 2, half = 1");
-  expect_findings(read(arm_with("${half}*sin(t)", "${half}*sin(x)")),
-                  "scene.urdf:28: <load> of simulation: history is no function of time, got expression '1*sin(x)', at "
-                  "character 7: Unexpected token \"x\" found at position 6.; expected an expression of t, or a table "
-                  "TIME:VALUE TIME:VALUE ... of '${half}*sin(x)' with half = 1");
+  expect_findings(
+      read(arm_with("${half}*sin(t)", "${half}*sin(x)")),
+      "scene.urdf:28: <load> of simulation: history is not a function of time, got expression '1*sin(x)', at "
+      "character 7: Unexpected token \"x\" found at position 6.; expected an expression of t, or a table "
+      "TIME:VALUE TIME:VALUE ... of '${half}*sin(x)' with half = 1");
 }
 
 TEST(Parameters, Declarations) {
@@ -214,11 +215,11 @@ TEST(Parameters, Declarations) {
                           "scene.urdf:2: <parameter> 'a': value must be from 2 to 3, got '1'");
   expect_parameter_errors(R"(<parameter name="a" value="1"/> <parameter name="b" value="${2*a}" max="1"/>)",
                           "scene.urdf:2: <parameter> 'b': value must be at most 1, got '2' of '${2*a}' with a = 1");
-  // Those above alone are known, and what follows from an error is not told.
+  // An expression can use only parameters above it. Consequences of an error are not reported.
   expect_parameter_errors(
       "<parameter name=\"a\" value=\"${a + b}\"/>\n<parameter name=\"b\" value=\"${a + 1}\"/>\n"
       "<parameter name=\"c\" value=\"${b}\"/>",
-      "scene.urdf:2: <parameter> 'a': 'a' is no parameter of the scene, no function, nor pi, got '${a + b}'");
+      "scene.urdf:2: <parameter> 'a': 'a' is not a parameter of the scene, no function, nor pi, got '${a + b}'");
 }
 
 TEST(Parameters, StandElsewhere) {
@@ -232,11 +233,11 @@ TEST(Parameters, GivenValuesThatCannotBe) {
   expect_findings(read_with({{"a", 1}}, "<robot name=\"r\"> <link name=\"a\"/> </robot>"),
                   "scene.urdf: scene: it has no <parameter>, got 'a'");
   expect_findings(read_with({{"length", 5}}),
-                  "scene.urdf:2: <parameter> 'length': the value that it is given must be from 0.5 to 4, got '5'");
+                  "scene.urdf:2: <parameter> 'length': the value that is set must be from 0.5 to 4, got '5'");
   expect_findings(read_with({{"half", 5}}),
-                  "scene.urdf:4: <parameter> 'half': the value that it is given must be at most 4, got '5'");
+                  "scene.urdf:4: <parameter> 'half': the value that is set must be at most 4, got '5'");
   expect_findings(read_with({{"payload", std::numeric_limits<double>::infinity()}}),
-                  "scene.urdf:3: <parameter> 'payload': the value that it is given must be a finite number, got 'inf'");
+                  "scene.urdf:3: <parameter> 'payload': the value that is set must be a finite number, got 'inf'");
 }
 
 TEST(Parameters, FilesWithoutThemThatNameSomethingAreXacro) {
@@ -260,7 +261,7 @@ TEST(Parameters, HostileExpressions) {
     for (int i = 0; i < count; ++i) all += text;
     return all;
   };
-  // Deep ones within the longest expression, longer ones, and very many.
+  // Deep expressions of the greatest length, longer ones, and very many.
   EXPECT_TRUE(gravity("0 0 ${" + repeated("(", 900) + "a" + repeated(")", 900) + "}").scene);
   for (const std::string& value :
        {"${" + repeated("(", 1 << 20), "${" + repeated("(", 1 << 20) + "}", "${" + repeated("a+", 1 << 20) + "a}",

@@ -1,5 +1,5 @@
 #pragma once
-/// A good scene as text, and ways to spoil it.
+/// A good scene as text, and functions that put errors into it.
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,10 @@ inline std::string text_of_file(const std::string& path) {
   return text.str();
 }
 
-/// Uses every element. It is a seed of the fuzzer, too.
+/// A scene that uses every element. It is also a seed of the fuzzer.
 inline const std::string kGoodScene = text_of_file(test::source_path("test/fuzz/seeds/everything.urdf"));
 
-/// The good scene with `from`, which must be there once, replaced.
+/// Returns the good scene with `from`, which must occur exactly once, replaced by `to`.
 inline std::string good_scene_with(const std::string& from, const std::string& to) {
   std::string text = kGoodScene;
   const std::size_t found = text.find(from);
@@ -36,7 +36,16 @@ inline ReadResult read(const std::string& text) {
   return read_scene_text(text, "scene.urdf");
 }
 
-/// The same from a file beside which lies a table.
+/// Returns all findings about a scene that is refused, with " | " between them.
+inline std::string findings_of(const std::string& text) {
+  const ReadResult result = read(text);
+  EXPECT_FALSE(result.scene) << text;
+  std::string found;
+  for (const Diagnostic& finding : result.diagnostics) found += (found.empty() ? "" : " | ") + finding.text();
+  return found;
+}
+
+/// Reads a scene from a file, with a table in the same folder.
 inline ReadResult read_with_table(const std::string& text, const std::string& name, const std::string& table) {
   const std::string folder = testing::TempDir();
   std::ofstream(folder + name) << table;
@@ -45,7 +54,7 @@ inline ReadResult read_with_table(const std::string& text, const std::string& na
   return read_scene_file(path);
 }
 
-/// Expects exactly one error, at this line, whose text contains the fragment.
+/// Expects exactly one error, on this line, with a message that contains the fragment.
 inline void expect_one_error(const std::string& text, int line, const std::string& fragment) {
   const ReadResult result = read(text);
   EXPECT_FALSE(result.scene);
@@ -55,13 +64,13 @@ inline void expect_one_error(const std::string& text, int line, const std::strin
                                                                             << result.diagnostics[0].text();
 }
 
-/// The good scene with one replacement has one error, at this line.
+/// Expects exactly one error, on this line, of the good scene with one replacement.
 inline void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
   SCOPED_TRACE(from + " -> " + to);
   expect_one_error(good_scene_with(from, to), line, fragment);
 }
 
-/// Expects a scene, and among its warnings one at this line whose text contains the fragment.
+/// Expects a scene with a warning on this line whose message contains the fragment.
 inline void expect_warning(const ReadResult& result, int line, const std::string& fragment) {
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
   for (const Diagnostic& finding : result.diagnostics)

@@ -1,4 +1,4 @@
-// Sections along a beam: as stations in the scene, and as a table beside it.
+// Tests sections along a beam: as stations in the scene, and as a table in another file.
 #include <gtest/gtest.h>
 
 #include "scene_text.h"
@@ -49,7 +49,7 @@ TEST(SectionTable, DirectStiffnesses) {
   EXPECT_EQ(std::get<DirectSection>(stations.sections[1]).mass, 14);
 }
 
-/// Two stations with the same entry(letter, row, column) of the matrices.
+/// Returns a table of two stations with the same matrices, given by entry(letter, row, column).
 template <class Entry>
 std::string matrix_table(const Entry& entry) {
   std::string header = "at", row;
@@ -62,7 +62,7 @@ std::string matrix_table(const Entry& entry) {
   return header + "\n0" + row + "\n1" + row + "\n";
 }
 
-/// Coupling k15; a mass of 2 per length in the centreline.
+/// A good matrix: coupling k15, and a mass of 2 per length on the centreline.
 int good_entry(char letter, int i, int j) {
   if (i != j) return letter == 'k' && i == 1 && j == 5 ? 3 : 0;
   return letter == 'k' ? 10 : i <= 3 ? 2 : 1;
@@ -84,8 +84,8 @@ TEST(SectionTable, ImpossibleMatrices) {
   };
   expect_table_error(with('k', 1, 5, 10), "blade.csv:2: the stiffness k11 to k66 must be positive definite");
   const std::string inertia = "blade.csv:2: the inertia m11 to m66 must be [[m 1, -m d^], [m d^, J]]";
-  expect_table_error(with('m', 1, 1, 3), inertia);  // another mass along x than along y
-  expect_table_error(with('m', 1, 4, 1), inertia);  // a mass centroid has no such moment
+  expect_table_error(with('m', 1, 1, 3), inertia);  // the mass along x differs from the mass along y
+  expect_table_error(with('m', 1, 4, 1), inertia);  // no offset of the centre of mass causes such a moment
 }
 
 TEST(SectionTable, Errors) {
@@ -95,7 +95,7 @@ TEST(SectionTable, Errors) {
   expect_table_error(kDirectHeader, "at least two stations are expected");
   expect_table_error(kDirectHeader + "0" + row, "at least two stations are expected");
   expect_table_error(kDirectHeader + "0" + row + "0" + row,
-                     "blade.csv:3: at must be > 0, that of the line before, got '0'");
+                     "blade.csv:3: at must be > 0, the value of the line before, got '0'");
   expect_table_error(kDirectHeader + "-1" + row, "blade.csv:2: at must be >= 0, got '-1'");
   expect_table_error(kDirectHeader + "0" + row + "1,1,2,3\n", "blade.csv:3: 11 numbers are expected, got '4'");
   expect_table_error(kDirectHeader + "0,1,2,3,4,5,6,7,8,9,nan\n", "blade.csv:2: j3 must be a finite number, got 'nan'");

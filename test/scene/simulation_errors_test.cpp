@@ -1,10 +1,11 @@
+/// Tests errors in the entries of <simulation>.
 #include "flexarm/schemes/integrator_description.h"
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
 namespace {
 
-/// The good scene with one more entry of <simulation>, on line 68, has one error there.
+/// Expects exactly one error on line 68, where `entry` is added to <simulation> of the good scene.
 void expect_entry_error(const std::string& entry, const std::string& fragment) {
   expect_error("  </simulation>", entry + "</simulation>", 68, fragment);
 }
@@ -91,7 +92,7 @@ TEST(SimulationErrors, Loads) {
   expect_entry_error(R"(<load link="tip" force="1 0 0" frame="body"/>)",
                      "frame must be 'world' or 'follower', got 'body'");
   expect_entry_error(R"(<load link="tip" force="1 0 0" history="2*x"/>)",
-                     "history is no function of time, got expression '2*x'");
+                     "history is not a function of time, got expression '2*x'");
   expect_entry_error(R"(<load link="tip" force="1 0 0" history="0:0 0:1"/>)", "expected strictly increasing times");
   expect_entry_error(R"(<load link="tip" force="1 0 0" history="1/t"/>)", "history must be finite at t = 0, got '1/t'");
   expect_entry_error(R"(<distributed_load link="tip"/>)", "attribute 'force' is missing");

@@ -1,11 +1,12 @@
-/// Where the mechanism starts: outside limits, at the nearest one, on a root link that floats.
+/// Tests the start of a mechanism: outside limits, at the nearest limit, and with a floating root link.
 
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
 namespace {
 
-/// A leg whose knee (line 5) starts outside its limits, unless its <initial> (line 9) or something else says more.
+/// Returns a leg whose knee (line 5) starts outside its limits, unless <initial> (line 9) or another element changes
+/// this.
 std::string leg(const std::string& entries, const std::string& simulation = "<simulation>") {
   return R"(<robot name="leg">
   <link name="trunk"/> <link name="thigh"/> <link name="shank"/>
@@ -32,8 +33,7 @@ void expect_silent(const ReadResult& result) {
 TEST(Start, OutsideLimitsIsAWarning) {
   const ReadResult silent = read(leg(""));
   EXPECT_EQ(silent.diagnostics.size(), 1u);
-  expect_warning(silent, 5,
-                 "<joint> 'knee': starts outside its limits, -2.5 to -0.75, and its stop will throw it back");
+  expect_warning(silent, 5, "<joint> 'knee': starts outside its limits, -2.5 to -0.75, and its stop will push it back");
   expect_warning(silent, 5, "got '0'");
   const ReadResult given = read(leg(R"(<initial joint="knee" position="-3"/>)"));
   EXPECT_EQ(given.diagnostics.size(), 1u);
@@ -47,7 +47,7 @@ TEST(Start, OnALimitOrWithoutStopsIsNone) {
   std::string mimicking = leg("");
   const std::string limit = R"(<limit lower="-2.5")";
   mimicking.replace(mimicking.find(limit), limit.size(), R"(<mimic joint="hip"/>)" + limit);
-  const ReadResult follower = read(mimicking);  // of its own limits only
+  const ReadResult follower = read(mimicking);  // only of its own limits
   EXPECT_EQ(follower.diagnostics.size(), 1u) << to_text(follower.diagnostics);
   expect_warning(follower, 5, "its own limits are not kept, since it follows 'hip' alone");
 }
@@ -125,7 +125,7 @@ TEST(Start, EquilibriumIsOnDemand) {
 
 namespace {
 
-/// A base of 3 kg with a hand.
+/// Returns a base of 3 kg with a hand.
 std::string base(const std::string& entries, const std::string& hand = "hand") {
   return R"(<robot name="drone">
   <link name="base"> <inertial> <mass value="3"/>
@@ -144,7 +144,8 @@ TEST(Start, AClampedRootLinkWithAMassIsAWarning) {
   expect_warning(result, 2, "got '3' kg");
   EXPECT_EQ(result.scene->root_link, "base");
   expect_silent(read(base(R"(<root type="clamped"/>)")));
-  // The names exchanged: 3 kg are fixed to a root without mass, and then to one that is the world by its name.
+  // With exchanged names, 3 kg are fixed to a root without mass, which needs a warning, and then to a root called
+  // "world", which needs none.
   const auto below = [](const std::string& root) {
     std::string text = base("", root);
     const std::string parent = "<parent link=\"base\"/> <child link=\"" + root + "\"/>";
@@ -172,7 +173,7 @@ TEST(Start, RootErrors) {
   expect_one_error(base(R"(<root/>)"), 6, "<root> of simulation: attribute 'type' is missing");
   expect_one_error(base(R"(<root type="free"/>)"), 6, "type must be one of clamped, floating, got 'free'");
   expect_one_error(base(R"(<root type="floating"/>)", "world"), 6,
-                   "a floating root link needs the name 'world' for a link, which line 4 has taken");
+                   "a floating root link needs the name 'world' for a link, which is already used in line 4");
   expect_one_error(good_scene_with("<!-- 2 -->", R"(<root type="floating"/>)"), 2, "<root> must be a child of");
 }
 

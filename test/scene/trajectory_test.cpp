@@ -1,4 +1,4 @@
-// Functions of time as columns of a file beside the scene.
+// Tests functions of time that are columns of a file in the folder of the scene.
 #include <cmath>
 
 #include "scene/scene_text.h"
@@ -25,7 +25,7 @@ TEST(Trajectory, HasTheRatesOfAColumn) {
   const ReadResult result = read_with("flexarm_moves.csv#elbow, elbow_rate", kMoves);
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
   const TimeFunction& set_point = result.scene->servos[0].set_point.value();
-  for (const double t : {0.0, 0.3, 0.5, 0.9, 1.0}) {  // t^2 is cubic
+  for (const double t : {0.0, 0.3, 0.5, 0.9, 1.0}) {  // t^2 is reproduced, since pieces are cubic
     EXPECT_NEAR(set_point(t), t * t, 1e-15);
     EXPECT_NEAR(set_point.derivative(t), 2 * t, 1e-14);
   }
@@ -39,7 +39,7 @@ TEST(Trajectory, RestsAtItsEndsWithoutRates) {
   EXPECT_EQ(set_point(0.5), 0.25);
   EXPECT_EQ(set_point.derivative(0), 0);
   EXPECT_EQ(set_point.derivative(1), 0);
-  // 2 (h + h) r = 3 (h d + h d): the slopes of the chords are 0.5 and 1.5.
+  // 2 (h + h) r = 3 (h d + h d), where the slopes d of the chords are 0.5 and 1.5.
   EXPECT_NEAR(set_point.derivative(0.5), 1.5, 1e-14);
 }
 
@@ -71,13 +71,13 @@ TEST(Trajectory, Errors) {
   expect_table_error(good, "", "flexarm_moves.csv:1: one column 'time' is expected");
   expect_table_error(good, "time,elbow\n0,1\n", "flexarm_moves.csv:2: at least two points are expected");
   expect_table_error(good, "time,elbow\n0,1\n0.5,2\n0.5,3\n",
-                     "flexarm_moves.csv:4: time must be > 0.5, that of the row before, got '0.5'");
+                     "flexarm_moves.csv:4: time must be > 0.5, the time of the row before, got '0.5'");
   expect_table_error(good, "time,elbow\n0,1\n1,nan\n", "flexarm_moves.csv:3: elbow must be a finite number, got 'nan'");
   expect_table_error(good, "time,elbow\n0,1\n1\n", "flexarm_moves.csv:3: 2 numbers are expected, got '1'");
   expect_table_error(good, "time,elbow\n0,-1e308\n1,1e308\n2,0\n", "flexarm_moves.csv:4: finite numbers");
 }
 
-// What is in columns of others is theirs.
+// Columns that the scene does not use may contain anything.
 TEST(Trajectory, LeavesOtherColumnsAlone) {
   const ReadResult result = read_with("flexarm_moves.csv#elbow", "time,note,elbow\n0,start,1\n1,,2\n");
   EXPECT_TRUE(result.scene) << to_text(result.diagnostics);

@@ -1,4 +1,4 @@
-// The table of schemes.
+// Tests the table of schemes: names, consistency, options.
 #include "schemes/scheme.h"
 
 #include "building/model_builder.h"
@@ -33,12 +33,12 @@ TEST(Schemes, UnknownNames) {
   for (const char* name : {"", "EM", "em ", "rk4"}) EXPECT_FALSE(find_scheme(name)) << name;
 }
 
-// What the rest of the code relies on.
+// Properties that the rest of the code relies on.
 TEST(Schemes, AreConsistent) {
   for (const Scheme& scheme : schemes()) {
     EXPECT_EQ(scheme.is_incremental(), scheme.stress != StressRule::EndPoint);
     EXPECT_TRUE(!scheme.conserves_energy || scheme.conserves_momenta);
-    // Increments that joints and bodies map exactly, where energy is exact.
+    // If energy is conserved exactly, joints and bodies must map increments exactly.
     EXPECT_TRUE(!scheme.conserves_energy || scheme.body_rotation == RotationRule::TangentScaled);
     EXPECT_TRUE(!scheme.nodal_rotary_inertia || scheme.body_rotation == RotationRule::TangentScaled);
     EXPECT_GE(scheme.gamma, 0.5);  // no negative damping

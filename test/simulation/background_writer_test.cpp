@@ -1,4 +1,5 @@
-// What is written from copies of the states in another thread is what looks in place would have written.
+// Tests BackgroundWriter, which writes results from copies of the state in another thread: it must write the same as a
+// writer in the thread that steps.
 #include "simulation/background_writer.h"
 
 #include <chrono>
@@ -19,7 +20,7 @@ namespace {
 
 using Rows = std::vector<std::vector<double>>;
 
-/// Keeps all columns of each row, and what a sensor measured after each step.
+/// A writer that keeps all columns of each row, and the sample of a sensor after each step.
 class Recorder : public ResultWriter {
  public:
   Recorder(const Simulation& simulation, Rows& rows)
@@ -39,7 +40,7 @@ class Recorder : public ResultWriter {
   Rows& rows_;
 };
 
-/// Rows after every third one of `steps`, with a reset on the way.
+/// Returns the rows that are written every third step of `steps`. The simulation is reset once on the way.
 Rows recorded(const scene::SceneDescription& scene, int steps, bool in_background) {
   Rows rows;
   Simulation simulation(scene);
@@ -61,7 +62,7 @@ void expect_same_rows(const scene::SceneDescription& scene, int steps) {
   ASSERT_EQ(here.size(), there.size());
   for (std::size_t i = 0; i < here.size(); ++i) {
     ASSERT_EQ(here[i].size(), there[i].size()) << "row " << i;
-    if (here[i].empty()) continue;  // has no address
+    if (here[i].empty()) continue;  // an empty vector has no address to compare
     EXPECT_EQ(std::memcmp(here[i].data(), there[i].data(), here[i].size() * sizeof(double)), 0) << "row " << i;
   }
 }
@@ -88,7 +89,7 @@ TEST(BackgroundWriter, WritesWhatSensorsWithNoiseMeasured) {
   expect_same_rows(builder.scene, 300);
 }
 
-// The model changes where a bead leaves its line; that floats, so that its origin is carried along.
+// The model changes when the bead leaves its line. The bead then floats, so that its origin moves along with it.
 TEST(BackgroundWriter, WritesTheSameBitsWhereSomethingLeavesItsLine) {
   SceneBuilder b;
   b.beam("line", {{2, 0, 0}}, section(2e3, 1e3, 80, 100, 1, 0.2, 0.1), 4, 2);
@@ -104,7 +105,7 @@ TEST(BackgroundWriter, WritesTheSameBitsWhereSomethingLeavesItsLine) {
   expect_same_rows(b.scene, 120);
 }
 
-/// Notes times of rows; `before_row` happens before each.
+/// A writer that notes the times of rows, and calls `before_row` before each of them.
 class Noting : public ResultWriter {
  public:
   Noting(std::vector<double>& times, std::function<void()> before_row)

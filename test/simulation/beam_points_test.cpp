@@ -1,4 +1,5 @@
-// What is published along a beam: strains and resultants belong to the poses beside them, and to the scheme.
+// Tests the published points along a beam: strains and resultants must fit to the poses of the neighbouring points, and
+// to the strain energy of each scheme.
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A full section whose mass centroid lies beside the centreline.
+/// A full section matrix whose mass centroid lies beside the centreline.
 scene::MatrixSection offset_section() {
   const Vector3 centre(0, 0.05, -0.03);
   const Matrix3 d = so3::hat(centre);
@@ -25,7 +26,7 @@ scene::MatrixSection offset_section() {
   return section;
 }
 
-/// A cantilever of linear elements, whose one stiffness point lies in their middle.
+/// A cantilever of linear elements. Each element has one stiffness point, in its middle.
 SceneBuilder cantilever(const scene::Section& section) {
   SceneBuilder b;
   b.beam("beam", {{1, 0, 0}}, section, 2, 1);
@@ -34,7 +35,7 @@ SceneBuilder cantilever(const scene::Section& section) {
   return b;
 }
 
-/// {Lambda^T r', Upsilon} of the published poses at points[i], by central differences.
+/// {Lambda^T r', Upsilon} at points[i], by central differences of the published poses.
 Vector6 differences(const std::vector<BeamPoint>& points, std::size_t i) {
   const BeamPoint &before = points[i - 1], &after = points[i + 1];
   const double length = after.arc_length - before.arc_length;
@@ -58,7 +59,8 @@ TEST(BeamPoints, StrainsAndResultantsBelongToThePosesBeside) {
     const BeamPoint& point = points[middle];
     const double curvature = point.strain.tail<3>().norm();
     ASSERT_GT(curvature, 0.3) << "a finite rotation";
-    // A central difference over h of a point at the distance c that turns with K: c K (K h)^2 / 24; and round-off / h.
+    // The error of a central difference over h, for a point at the distance c that turns with the curvature K, is c K
+    // (K h)^2 / 24. Round-off adds eps / h.
     const double h = 1.0 / kIntervals;
     const double tolerance = 0.06 * curvature * std::pow(curvature * h, 2) / 24 + 8 * kEpsilon / h;
     EXPECT_LT((point.strain - (differences(points, middle) - straight)).norm(), tolerance);
@@ -69,7 +71,7 @@ TEST(BeamPoints, StrainsAndResultantsBelongToThePosesBeside) {
 
 class BeamPointsOfScheme : public ::testing::TestWithParam<SchemeVariant> {};
 
-// The one stiffness point of a linear element has all its strain energy.
+// The only stiffness point of a linear element carries all its strain energy.
 TEST_P(BeamPointsOfScheme, StrainsAreThoseOfTheStrainEnergy) {
   const scene::DirectSection section{2e4, 1e4, 1e4, 40, 50, 60, 2, 0.02, 0.01, 0.01};
   SceneBuilder b = cantilever(section);
@@ -86,13 +88,13 @@ TEST_P(BeamPointsOfScheme, StrainsAreThoseOfTheStrainEnergy) {
   }
   const double expected = simulation.energies().strain;
   ASSERT_GT(expected, 0.1);
-  // Strains are differences of numbers of order 1, on both ways.
+  // Strains are differences of numbers of order 1 in both computations.
   const double round_off = 8 * kEpsilon * std::sqrt(2 * section.ea * expected);
   EXPECT_NEAR(energy, expected, round_off + 8 * kEpsilon * expected);
 }
 
-// Without numerical dissipation, which keeps energy beside that of the strains, and without the thesis's beta, which
-// may fail where the axial strain rests.
+// Left out are schemes with numerical dissipation, which store energy besides the strain energy, and the thesis's beta
+// schemes, which may fail while the axial strain does not change.
 INSTANTIATE_TEST_SUITE_P(AllSchemes, BeamPointsOfScheme,
                          ::testing::ValuesIn(scheme_variants_where([](const Scheme& scheme) {
                            return !scheme.dissipation.any() && scheme.correction != EnergyCorrection::AxialBeta;

@@ -1,5 +1,5 @@
 #pragma once
-/// A mechanism on whose links something acts from outside.
+/// A mechanism for tests of wrenches and springs from outside.
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace flexarm::test {
 
-/// A body on a ball joint that carries a beam, with a node at the beam's middle; steps of 2 ms.
+/// A rigid body on a ball joint carries a beam with a node at its middle. The step is 2 ms.
 inline SceneBuilder body_with_beam() {
   SceneBuilder b;
   b.scene.integrator.step = 0.002;

@@ -1,4 +1,4 @@
-// States that are kept, restored, written and read back continue as if nothing had happened.
+// Tests that a simulation continues bit for bit after it is reset, restored from a snapshot, or read back from a file.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 class Checkpoint : public ::testing::TestWithParam<std::string> {
  protected:
-  /// Full Newton: kept factors belong to the run, not to the state, and would change the last bits.
+  /// Uses full Newton: kept factors belong to the run and not to the state, so they would change the last bits.
   Simulation simulation() const {
     SimulationOptions options;
     options.scheme = GetParam();
@@ -55,7 +55,7 @@ TEST_P(Checkpoint, ResetReproducesTheRun) {
   }
 }
 
-// In steps of another length, which the scheme was not made for.
+// The step size is changed during the run, after the scheme was set up for another one.
 TEST_P(Checkpoint, CarriesTheStepInUse) {
   const auto halved = [this] {
     Simulation simulation = this->simulation();
@@ -113,7 +113,7 @@ TEST_P(Checkpoint, FileContinuesBitForBit) {
   EXPECT_EQ(resumed.effort(*resumed.find_coordinate("elbow")), 0.3) << "commands are part of the state";
 }
 
-// What friction has stopped stays where it is, also when read back.
+// Coordinates that stick by dry friction stay at rest, also after the state is read back.
 TEST_P(Checkpoint, FileKeepsWhatSticks) {
   if (GetParam() == "em4") GTEST_SKIP() << "refuses friction that sticks";
   if (GetParam() == "beta1" || GetParam() == "beta2")
@@ -131,7 +131,7 @@ TEST_P(Checkpoint, FileKeepsWhatSticks) {
   EXPECT_TRUE(same_bits(state_of(resumed), state_of(simulation)));
 }
 
-// Rotors, what controllers remember and set points that were commanded are part of the state.
+// Angles of rotors, the memory of controllers, and commanded set points are part of the state.
 TEST_P(Checkpoint, FileKeepsDrivesAndServos) {
   if (GetParam() == "em4") GTEST_SKIP() << "refuses samples";
   if (GetParam() == "beta1" || GetParam() == "beta2")
@@ -150,13 +150,14 @@ TEST_P(Checkpoint, FileKeepsDrivesAndServos) {
   EXPECT_GT(simulation.position(*simulation.find_coordinate("prismatic")), 0.005);
 }
 
-// With kept factors (the default) the converged steps agree to Newton's remainder, not to the last bit.
+// With kept factors (the default), the steps agree only to the error of Newton's method, not to the last bit.
 TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
   SimulationOptions options;
   options.scheme = GetParam();
   SceneBuilder builder = everything_scene();
-  // Near rest the Newmark family rings on the steep law of friction, and blows up what differs by round-off. So does
-  // the part of a composed step that goes back: friction drives there.
+  // Near rest, the Newmark family oscillates on the steep law of friction, which amplifies differences of round-off. A
+  // composed scheme does so in its backward sub-step, where friction feeds energy in. So there is no friction for
+  // these.
   const Scheme scheme = *find_scheme(GetParam());
   if (!scheme.is_incremental() || scheme.is_composition)
     for (auto* joints : {&builder.scene.joints, &builder.scene.loop_joints})
@@ -203,7 +204,7 @@ std::vector<std::string> scene_files() {
   return files;
 }
 
-// What two simulations come to from the same state is the same, wherever each of them was before.
+// Two simulations with the same state must make the same next steps, whatever each of them did before.
 TEST(StateAlone, LeadsToTheNextStepsInEveryScene) {
   constexpr int kStretches = 25, kSteps = 25;
   SimulationOptions options;

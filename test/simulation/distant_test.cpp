@@ -1,4 +1,4 @@
-// Mechanisms far from the world's origin move as they do there.
+// Tests that mechanisms far from the world's origin move exactly as they do near it.
 #include <cmath>
 #include <limits>
 
@@ -12,8 +12,8 @@ namespace {
 
 using scene::JointKind;
 
-/// An arm of a body and a beam, which a joint of that kind holds at a place, a rod that stands beside it and carries
-/// its end in a loop, a probe on each link.
+/// An arm of a body and a beam, held at `place` by a joint of the given kind. A rod stands beside it and carries its
+/// end, which closes a loop. Each link has a probe.
 scene::SceneDescription arm(JointKind kind, const Vector3& place) {
   SceneBuilder b;
   b.scene.gravity = Vector3(0, 0, -9.81);
@@ -27,7 +27,7 @@ scene::SceneDescription arm(JointKind kind, const Vector3& place) {
   return b.scene;
 }
 
-/// The arm with its tip held to the world.
+/// The arm with its tip attached to the world.
 scene::SceneDescription held_arm(const Vector3& place) {
   SceneBuilder b;
   b.scene = arm(JointKind::Continuous, place);
@@ -38,7 +38,7 @@ scene::SceneDescription held_arm(const Vector3& place) {
 
 void expect_alike(const scene::SceneDescription& near, const scene::SceneDescription& far, const Vector3& place) {
   Simulation here(near), there(far);
-  // Places in the scene are rounded, those that are read as well.
+  // Positions are rounded in the scene, and again where they are read.
   const double unit = std::numeric_limits<double>::epsilon() * place.norm();
   for (int n = 0; n < 100; ++n) {
     const StepResult result = here.step(), distant = there.step();
@@ -78,13 +78,13 @@ TEST(Distant, ArmsMoveAsAtTheOrigin) {
   }
 }
 
-// The place where the world holds the tip is rounded in the scene: to a power of two it is not.
+// The scene rounds the place where the world holds the tip. Powers of two add no rounding error.
 TEST(Distant, LoopsToTheWorldAsWell) {
   const Vector3 place(std::ldexp(1, 30), 0, -std::ldexp(1, 20));
   expect_alike(held_arm(Vector3::Zero()), held_arm(place), place);
 }
 
-/// The arm on a floating joint whose coordinates start at `place`.
+/// The arm on a floating joint whose translations start at `place`.
 scene::SceneDescription floating_arm(const Vector3& place, const Vector3& velocity) {
   scene::SceneDescription scene = arm(JointKind::Floating, Vector3::Zero());
   for (int k = 0; k < 3; ++k)
@@ -110,7 +110,7 @@ TEST(Distant, FloatingJointsMayHaveLargeCoordinates) {
       EXPECT_LE((there.link_pose(i).position - here.link_pose(i).position - moved).norm(), 2 * unit);
     }
     EXPECT_EQ(there.probe(1).pose.position, here.probe(1).pose.position) << "the ground";
-    // What is written is read again to the last digit.
+    // A snapshot loses no digit: after it is restored, the same step gives the same result.
     const Snapshot before = there.snapshot();
     ASSERT_TRUE(there.step().converged);
     const Vector3 tip = there.probe(0).pose.position;
@@ -120,8 +120,9 @@ TEST(Distant, FloatingJointsMayHaveLargeCoordinates) {
   }
 }
 
-// A mechanism does not feel how far it has come. Positions are rounded as at the end of one step, which shakes the rod
-// in every step anew; rounded as at the end of the way, a thousand times as much.
+// The rounding error of positions must not grow with the distance travelled. Positions are rounded relative to one
+// step's travel; this disturbs the rod in every step. Rounded relative to the whole distance, the disturbance would be
+// a thousand times as large.
 TEST(Distant, FlightsDoNotStrain) {
   constexpr double kStiffness = 1e9, kLength = 1, kSpeed = 1e6;
   constexpr int kElements = 4, kSteps = 1000;
@@ -153,7 +154,7 @@ TEST(Distant, AngularMomentumIsAboutTheWorldsOrigin) {
             4 * std::numeric_limits<double>::epsilon() * place.norm() * here.momentum().norm());
 }
 
-// What is near is left where it is.
+// The origin of a mechanism near the world's origin is not moved.
 TEST(Distant, NearMechanismsKeepTheWorldsOrigin) {
   for (const double distance : {0.0, 1.0, 50.0})
     EXPECT_EQ(model_of(Simulation(arm(JointKind::Continuous, distance * Vector3::UnitX()))).origin, Vector3::Zero());

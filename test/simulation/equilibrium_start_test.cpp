@@ -1,4 +1,4 @@
-// A start in static equilibrium: nothing moves afterwards; what has no equilibrium is refused.
+// Tests starts in static equilibrium: nothing moves afterwards, and a scene without equilibrium is refused.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -13,10 +13,10 @@ using namespace test;
 using scene::JointKind;
 
 constexpr double kBending = 100, kStretching = 1e5;  // EI [N m^2], EA [N] of the forearm
-constexpr double kMass = 6.2;                        // of the arm [kg]
+constexpr double kMass = 6.2;                        // of the whole arm [kg]
 
-/// An arm under gravity: a rigid upper arm on a servo behind an elastic gear, a flexible forearm on a spring that is
-/// pushed by an effort, a hand on a sampled servo with a delay that integrates, and a load on the hand.
+/// An arm under gravity. The rigid upper arm has a servo behind an elastic gear. The flexible forearm hangs on a joint
+/// spring and is pushed by an effort. The hand has a sampled servo with delay and integral, and carries a load.
 SceneBuilder held_arm() {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -47,7 +47,7 @@ TEST_P(EquilibriumStart, NothingMoves) {
   const IntegratorDescription& scheme = GetParam().integrator;
   b.scene.integrator = scheme;
   b.scene.integrator.step = 1e-3;
-  if (GetParam().scheme.is_composition)  // which refuses what samples
+  if (GetParam().scheme.is_composition)  // composed schemes refuse sampled servos
     b.scene.servos.back().sample_time = b.scene.servos.back().delay = 0;
   Simulation simulation(b.scene);
   for (const scene::Diagnostic& warning : simulation.start_warnings())
@@ -61,22 +61,23 @@ TEST_P(EquilibriumStart, NothingMoves) {
     way = std::max(way, (simulation.probe(0).pose.position - start).norm());
     kinetic = std::max(kinetic, simulation.energies().kinetic);
   }
-  // Strains have errors of round-off, whose forces EA eps move the end by that over 3 EI / L^3, at worst in each step
-  // anew.
+  // Bound of the motion: strains have round-off, whose force EA eps moves the end by EA eps / (3 EI / L^3), in the
+  // worst case once more in each step.
   const double eps = std::numeric_limits<double>::epsilon();
   const double bound = kSteps * eps * kStretching / (3 * kBending / std::pow(0.8, 3));
   EXPECT_LT(way, bound);
   EXPECT_LT(kinetic, kMass * bound * bound / (1e-3 * 1e-3)) << "at most that way in each step";
 }
 
-// Not the beta schemes: they correct the energy by what they divide by the change of the axial strain, of which there
-// is nothing here but round-off.
+// The beta schemes are left out: their energy correction divides by the change of the axial strain, which is only
+// round-off here.
 INSTANTIATE_TEST_SUITE_P(Schemes, EquilibriumStart, testing::ValuesIn(scheme_variants_where([](const Scheme& scheme) {
                            return scheme.name.substr(0, 4) != "beta";
                          })),
                          [](const auto& info) { return info.param.name; });
 
-// Servos that integrate are at rest without an error, the others where kp holds the load.
+// A servo with an integral holds the load without an error. A servo without one has the error at which kp holds the
+// load.
 TEST(EquilibriumStarts, ServosStandWhereTheyWouldComeToRest) {
   SceneBuilder b = held_arm();
   Simulation integrating(b.scene);
@@ -84,7 +85,7 @@ TEST(EquilibriumStarts, ServosStandWhereTheyWouldComeToRest) {
   EXPECT_NEAR(integrating.position(wrist), 0, 1e-14);
   b.scene.servos.back().ki = 0;
   Simulation proportional(b.scene);
-  // The load of 5 N across the hand is 0.2 m from the joint.
+  // The load of 5 N acts across the hand, 0.2 m from the joint.
   const double angle = proportional.position(wrist);
   EXPECT_GT(angle, 0.01);
   ASSERT_TRUE(proportional.step().converged);
@@ -149,7 +150,7 @@ TEST(EquilibriumStarts, TellWhatIsDoubtful) {
   EXPECT_TRUE(Simulation(b.scene).start_warnings().empty());
 }
 
-// Gravity has no moment about the vertical yaw axis.
+// Gravity has no moment about the vertical yaw axis, so any yaw angle is an equilibrium.
 TEST(EquilibriumStarts, LeaveNeutralJointsWhereTheyAre) {
   for (const bool is_flexible : {false, true}) {
     SceneBuilder b;

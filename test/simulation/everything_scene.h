@@ -1,5 +1,5 @@
 #pragma once
-/// One scene with all that a scene can have.
+/// Scenes that contain every feature that a scene can have.
 
 #include "support/loops.h"
 
@@ -74,7 +74,7 @@ inline SceneBuilder everything_scene() {
   return b;
 }
 
-/// The same with dry friction that sticks and grows with the force on the joint.
+/// The same scene with dry friction that sticks and grows with the force on the joint.
 inline SceneBuilder rubbing_scene() {
   using scene::JointKind;
   SceneBuilder b = everything_scene();
@@ -88,7 +88,7 @@ inline SceneBuilder rubbing_scene() {
   return b;
 }
 
-/// The same with motors behind rigid and elastic gears, springs, and servos, one of them sampled.
+/// The same scene with motors behind rigid and elastic gears, springs, and servos, one of which is sampled.
 inline SceneBuilder driven_scene() {
   SceneBuilder b = everything_scene();
   const auto servo = [&](const std::string& joint, double kp, double kd, double ki) -> scene::ServoDescription& {

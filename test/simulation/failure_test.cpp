@@ -1,4 +1,4 @@
-// A failed step says what failed, where, and what usually helps.
+// Tests the explanation of a failed step: what failed, where, and what usually helps.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -69,14 +69,14 @@ TEST(Failure, FastRotorIsNamedWithItsRotation) {
   const StepResult result = simulation.step();
   ASSERT_EQ(result.reason, Reason::RotationTooLarge);
   EXPECT_EQ(result.failure.quantity, Quantity::Rotation);
-  // Its exact rotation, 2.5 rad, as the tangent-scaled rule has it.
+  // The exact rotation is 2.5 rad. The tangent-scaled rule turns by this angle instead.
   EXPECT_NEAR(result.failure.amount, 2 * std::atan(0.5 * 100 * 0.025), 1e-6);
   expect_says(simulation, result, "link 'rotor'");
 }
 
 TEST(Failure, ElementBentBeyondItsInterpolationIsNamed) {
   SceneBuilder b;
-  // Straight but for a moment that bends each element, slowly, by more than its nodes can tell from less.
+  // A moment grows slowly and bends each element so far that its nodes no longer show by how much.
   b.beam("arm", {{1, 0, 0}}, section(1e5, 3.5e4, 0.8, 1, 1, 2e-5, 1e-5), 2, 2);
   b.joint("clamp", JointKind::Fixed, "world", "arm");
   b.load("arm", {1, 0, 0}, Vector3::Zero(), {0, 9 * kPi, 0}, "(1 - cos(_pi*min(t, 20)/20))/2");
@@ -87,7 +87,7 @@ TEST(Failure, ElementBentBeyondItsInterpolationIsNamed) {
   const StepResult result = first_failure(simulation, 20);
   ASSERT_EQ(result.reason, Reason::BentTooFar) << simulation.explain(result);
   EXPECT_EQ(result.failure.quantity, Quantity::Bending);
-  // What the interpolation has room for is two half turns on either side of the middle node.
+  // The interpolation is unique up to half a turn on either side of the middle node, 2 pi in all.
   EXPECT_NEAR(result.failure.amount, 2 * kPi, 0.1 * kPi);
   expect_says(simulation, result, "of 2 of link 'arm'");
   expect_says(simulation, result, "a finer mesh of that link: 4 elements or more");
@@ -95,8 +95,9 @@ TEST(Failure, ElementBentBeyondItsInterpolationIsNamed) {
 
 TEST(Failure, LoopDrivenBeyondItsReachIsAtADeadPoint) {
   SceneBuilder b;
-  // A four-bar linkage: crank 0.8 m upwards, coupler to (0.6, 0, 0.8), rocker of 0.6 m from (0.6, 0, 0.2). With both in
-  // line the crank's end is 1.2 m from the rocker's foot, and it turns further.
+  // A four-bar linkage: the crank points 0.8 m upwards, the coupler leads to (0.6, 0, 0.8), and the rocker of 0.6 m
+  // stands on (0.6, 0, 0.2). When coupler and rocker are in line, the crank's end is 1.2 m from the rocker's foot. The
+  // crank is driven further.
   const Matrix3 inertia = 0.05 * Matrix3::Identity();
   b.body("crank", 1, {0, 0, 0.4}, inertia);
   b.body("coupler", 1, {0.3, 0, 0}, inertia);
@@ -114,7 +115,7 @@ TEST(Failure, LoopDrivenBeyondItsReachIsAtADeadPoint) {
   expect_says(simulation, result, "loop joint 'hip'");
 }
 
-// The nodes of a hinge that is driven by nearly a turn look as if it had turned back a little.
+// When a hinge is driven by nearly a full turn, its nodes look as if they had turned back by a small angle.
 TEST(Failure, DrivenHingeThatTurnsByNearlyATurnIsNamed) {
   SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
@@ -131,7 +132,8 @@ TEST(Failure, DrivenHingeThatTurnsByNearlyATurnIsNamed) {
   EXPECT_TRUE(halved.step().converged);
 }
 
-// Most of these are refused when the model is built (singular_starts_test).
+// Most scenes with a singular tangent are refused when the model is built (singular_starts_test), so the result is made
+// by hand.
 TEST(Failure, SingularTangentAsksForACheck) {
   const Simulation simulation(clamped_arm().scene);
   StepResult result;

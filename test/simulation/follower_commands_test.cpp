@@ -1,4 +1,5 @@
-// Joints that mimic others: where those of fixed joints are held, and what is said of commands to them.
+// Tests joints that mimic others: at which position a mimic of a fixed joint is held, and which error a command to a
+// mimic gives.
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -12,7 +13,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Two fingers on hinges about y, the right one of which follows the left by 0.3.
+/// Two fingers on hinges about y. The right one mimics the left one with the offset 0.3.
 Simulation gripper(const std::string& type, const std::string& more = "") {
   const std::string inertial =
       R"(<inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-2" iyz="0" izz="1e-2"/></inertial>)";
@@ -47,11 +48,12 @@ TEST(FollowerOfAFixedJoint, IsHeldAtItsOffset) {
   for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
   EXPECT_EQ(simulation.position(right), 0.3);
   EXPECT_EQ(simulation.velocity(right), 0);
-  // Against gravity, about y: what holds it is m g times the arm of its centre of mass; y turns x towards -z.
+  // The effort against gravity is m g times the horizontal distance of the centre of mass. A positive rotation about y
+  // turns x towards -z, which gives the sign.
   EXPECT_NEAR(simulation.effort(right), -9.81 * 0.1 * std::cos(0.3), 1e-12);
 }
 
-// A master that is a motion of its own, beside it and as one of a chain, gives the same.
+// A third joint mimics the mimic of the fixed joint. It is held, too.
 TEST(FollowerOfAFixedJoint, MayLeadOthers) {
   Simulation simulation =
       gripper("fixed",
@@ -73,7 +75,9 @@ TEST(FollowerCommands, NameTheJointThatIsFollowed) {
   EXPECT_EQ(refusal_of_commands(simulation, right), told);
   EXPECT_EQ(refusal_of_set_points(simulation, right), told);
   EXPECT_EQ(refusal_of_commands(simulation, left), "");
-  EXPECT_EQ(refusal_of_set_points(simulation, left), "'left' has no servo");
+  EXPECT_EQ(
+      refusal_of_set_points(simulation, left),
+      "'left' has no servo: write <servo joint=\"left\" mode=\"position\" kp=\"...\" kd=\"...\"/> into the scene");
   EXPECT_EQ(refused([&] { simulation.command_effort(left, 1); }), "");
 }
 
@@ -83,6 +87,11 @@ TEST(FollowerCommands, ToThoseOfFixedJointsSayThatTheyAreHeld) {
   const std::string told = "'right' mimics 'left' and is held, since a fixed joint leads it";
   EXPECT_EQ(refused([&] { simulation.command_effort(right, 1); }), told);
   EXPECT_EQ(refused([&] { simulation.command_set_point(right, 1); }), told);
+}
+
+TEST(Commands, ToUnknownJointsNameTheKnownOnesTheNearestFirst) {
+  EXPECT_EQ(unknown_coordinate(gripper("continuous"), "rigth"),
+            "there is no joint coordinate 'rigth'; the scene has right, left");
 }
 
 TEST(FollowerCommands, ToPrescribedJointsSaySo) {

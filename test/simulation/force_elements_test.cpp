@@ -1,4 +1,5 @@
-// A kind of force element that only tests know, from its line in the scene to its columns.
+// Tests a kind of force element that only the tests define (support/strut.h): from its line in the scene to its result
+// columns.
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/urdf_reader.h"
@@ -39,7 +40,7 @@ Simulation pushed_cart(const std::string& numbers, double step = 0.01, const Sim
 
 constexpr double kCartMass = 2, kCubicDamping = 5, kSpeedAtStart = 3;
 
-/// m v' = -c v^3.
+/// The exact speed of a cart with m v' = -c v^3.
 double exact_speed(double time) {
   return kSpeedAtStart / std::sqrt(1 + 2 * kCubicDamping * kSpeedAtStart * kSpeedAtStart / kCartMass * time);
 }
@@ -52,7 +53,8 @@ double run_until(Simulation& simulation, double until) {
 double error_of_place(double step) {
   Simulation simulation = pushed_cart("cubic=\"5\"", step);
   run_until(simulation, 0.4);
-  // Of the place, since velocities are published at third order: x(t) = m / c (1 / v(t) - 1 / v(0)).
+  // The error is measured in the position, since velocities are published with an error of third order. Exact: x(t) = m
+  // / c (1 / v(t) - 1 / v(0)).
   return std::abs(simulation.position(0) - kCartMass / kCubicDamping * (1 / exact_speed(0.4) - 1 / kSpeedAtStart));
 }
 
@@ -74,7 +76,7 @@ TEST(ForceElements, CountInTheAccountOfEnergies) {
 TEST(ForceElements, PutOutWhatTheySay) {
   Simulation simulation = pushed_cart("linear=\"0.5\" push=\"7\"");
   ResultColumns columns(simulation, ResultColumns::Solver::Without, {"strut/*"});
-  ASSERT_EQ(columns.columns().size(), 4u);  // time is always there
+  ASSERT_EQ(columns.columns().size(), 4u);  // time is always a column
   EXPECT_EQ(columns.columns()[1].name, "strut/s/length");
   EXPECT_EQ(columns.columns()[2].unit, "N");
   run_until(simulation, 1);
@@ -86,7 +88,7 @@ TEST(ForceElements, PutOutWhatTheySay) {
 
 TEST(ForceElements, RememberInCheckpoints) {
   SimulationOptions options;
-  options.reuse_factorisation = false;  // steps follow from states alone
+  options.reuse_factorisation = false;  // then steps depend on the state alone
   Simulation one = pushed_cart("cubic=\"0.2\"", 0.01, options);
   run_until(one, 0.5);
   Simulation other = pushed_cart("cubic=\"0.2\"", 0.01, options);
@@ -98,7 +100,7 @@ TEST(ForceElements, RememberInCheckpoints) {
   EXPECT_THROW(read_checkpoint_text(another, checkpoint_text(one), "text"), std::runtime_error);
 }
 
-// Small deviations of the speed v: m dv' = -(c1 + 3 c3 v^2) dv.
+// For small deviations of the speed v: m dv' = -(c1 + 3 c3 v^2) dv.
 TEST(ForceElements, AreInLinearModels) {
   const Simulation simulation = pushed_cart("linear=\"0.5\" cubic=\"0.2\"");
   LinearRequest request;
@@ -108,7 +110,7 @@ TEST(ForceElements, AreInLinearModels) {
               1e-8);
 }
 
-// A spring of 100 N/m, slack at 1 m, holds a push of 7 N.
+// A spring of 100 N/m, unstressed at its initial length of 1 m, holds a push of 7 N.
 TEST(ForceElements, AreInEquilibria) {
   scene::ReadResult result = cart_scene(R"(<strut from="world" to="cart" to_at="1 0 0" push="7" cubic="1"/>
   <spring from="world" to="cart" to_at="1 0 0" stiffness="100"/>)");
@@ -119,7 +121,7 @@ TEST(ForceElements, AreInEquilibria) {
               1e-9);
 }
 
-// dv(t)/dc of v = v0 (1 + 2 c v0^2 t / m)^(-1/2).
+// The exact derivative dv(t)/dc of v = v0 (1 + 2 c v0^2 t / m)^(-1/2).
 TEST(ForceElements, HaveSensitivities) {
   const std::string strut = R"(<strut from="world" to="cart" to_at="1 0 0" cubic="${cubic}"/>)";
   scene::ReadResult result = cart_scene(strut);

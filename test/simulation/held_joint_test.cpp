@@ -1,4 +1,4 @@
-// A joint whose motion is a constant: no unknown, and it tells what holds it.
+// Tests a joint with a constant prescribed motion: it has no unknown, and reports the effort that holds it.
 #include <gtest/gtest.h>
 
 #include "simulation/inside.h"
@@ -11,7 +11,7 @@ using scene::JointKind;
 
 constexpr double kAngle = 0.4;
 
-/// Three links, the second of which stands at an angle to the first: by a motion, or by a fixed joint.
+/// Three links. The second one stands at an angle to the first, either by a constant motion or by a fixed joint.
 SceneBuilder arm(bool is_fixed) {
   SceneBuilder b;
   const Matrix3 inertia = Vector3(0.02, 0.03, 0.01).asDiagonal();
@@ -46,15 +46,16 @@ TEST_P(HeldJoint, HasNoUnknownAndTellsWhatHoldsIt) {
   }
   EXPECT_EQ(held.position(1), kAngle);
   EXPECT_EQ(held.velocity(1), 0);
-  // The sensor's axes and place are those of the joint; both are of second order, of links that turn by 5 rad/s.
+  // The sensor has the axes and the origin of the joint. Both results have errors of second order, for links that turn
+  // by 5 rad/s.
   EXPECT_NEAR(held.effort(1), held.sample(0).values[4], 25 * std::pow(held.step_size(), 2));
   EXPECT_GT(std::abs(held.effort(1)), 0.1);
   EXPECT_LT((held.probe(0).pose.position - fixed.probe(0).pose.position).norm(), 1e-9);
-  // What holds it does no work.
+  // The effort that holds the joint does no work.
   EXPECT_NEAR(held.energies().work, 0, 1e-12);
 }
 
-// A sensor of what holds a fixed link gives it a node, and changes nothing of what moves outboard of it.
+// A sensor of the reaction at a fixed link gives the link a node of its own, and does not change the motion.
 TEST(FixedJoint, MovesTheSameWithASensor) {
   const SceneBuilder with = arm(true);
   SceneBuilder without = with;

@@ -1,5 +1,5 @@
-// Joints whose motions are constant cost what fixed ones do: what they carry is a part of their masters' bodies. What
-// drives them is known all the same.
+// Tests joints with constant motions ("held" joints): they cost no more than fixed joints, because the links they carry
+// become part of the master's body. The effort that drives them is still known.
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/point_spring.h"
@@ -20,8 +20,8 @@ constexpr double kStep = 1e-3, kSolved = 1e-12;
 constexpr int kSteps = 60;
 constexpr double kRemainder = 0.5 * kSteps * kSteps * kSolved;  // [m]
 
-/// How joints keep their place: by fixed joints, by constant motions, or by functions of time that have one value,
-/// which take a node and a row each.
+/// How joints keep their position: Fixed by fixed joints, Held by constant motions, Driven by functions of time that
+/// have a single value. Driven joints need a node and a row each.
 enum class Kept { Fixed, Held, Driven };
 
 TimeFunction constant(double value, Kept kept) {
@@ -42,7 +42,7 @@ void keep(SceneBuilder& b, scene::JointDescription& joint, double value, Kept ke
 
 const Matrix3 kInertia = Vector3(0.02, 0.03, 0.01).asDiagonal();
 
-/// Six links that turn about two free joints; three joints in a row are kept, the second of which is a slider, a fixed
+/// Six links that turn about two free joints. Three joints in a row are kept, the second of which is a slider. A fixed
 /// link hangs on the last one.
 SceneBuilder spatial_arm(Kept kept) {
   SceneBuilder b;
@@ -63,7 +63,7 @@ SceneBuilder spatial_arm(Kept kept) {
   return b;
 }
 
-/// A beam behind a moving joint, and one that a kept joint carries itself, on a kept base.
+/// An arm on a kept base. One beam hangs on a moving joint, another one on a kept joint.
 SceneBuilder flexible_arm(Kept kept) {
   SceneBuilder b;
   const scene::DirectSection rod = section(2e5, 1e5, 40, 60, 0.5, 1e-4, 5e-5);
@@ -107,7 +107,7 @@ TEST(HeldLinks, HaveNoNodesOfTheirOwn) {
   }
 }
 
-// What Newton's method leaves of a step is a velocity in all later ones.
+// Bound kRemainder: the error of Newton's method in one step is a velocity in all later steps.
 TEST(HeldLinks, MoveAsBehindFixedJoints) {
   for (const auto& scene : {spatial_arm, flexible_arm})
     for (const std::string& scheme : kSchemes) {
@@ -140,7 +140,8 @@ TEST(HeldLinks, StandAtTheirJointsPositions) {
   EXPECT_EQ(held.position(0), 0.1);
 }
 
-// Two equal arms to the left and to the right of a pendulum that hangs at rest, and a crane's that stands on the world.
+// Two equal arms on the left and right of a pendulum that hangs at rest, and a crane on the world. Their exact efforts
+// balance the weights.
 TEST(HeldLinks, AreHeldAgainstTheirWeights) {
   for (const std::string& scheme : kSchemes) {
     SceneBuilder b;
@@ -164,7 +165,7 @@ TEST(HeldLinks, AreHeldAgainstTheirWeights) {
   }
 }
 
-/// What drives the joints at `time`.
+/// Efforts that drive the joints at `time`.
 std::vector<double> efforts(const SceneBuilder& b, const std::string& scheme, double step, double time) {
   Simulation simulation = simulated(b, scheme, step);
   advance(simulation, static_cast<int>(std::lround(time / step)));
@@ -180,7 +181,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return largest;
 }
 
-// Both are efforts of second order of the same motion: their distance is a quarter where steps are halved.
+// Both results approximate the efforts of the same motion with errors of second order. So the difference falls to a
+// quarter when steps are halved.
 TEST(HeldLinks, AreDrivenByTheSameEfforts) {
   SceneBuilder held = spatial_arm(Kept::Held), driven = spatial_arm(Kept::Driven);
   for (SceneBuilder* b : {&held, &driven}) {
@@ -196,8 +198,8 @@ TEST(HeldLinks, AreDrivenByTheSameEfforts) {
   }
 }
 
-// Nothing is approximated where a beam hangs on the joint itself, or the links stand on the world; the elbow's share of
-// its body is of second order in steps that resolve 30 rad/s.
+// The effort is exact where a beam hangs on the joint itself, and where the links stand on the world. The elbow's share
+// of the forces of its body has an error of second order, in steps that resolve 30 rad/s.
 TEST(HeldLinks, CarryBeams) {
   const SceneBuilder held = flexible_arm(Kept::Held), driven = flexible_arm(Kept::Driven);
   for (const std::string scheme : {"em", "edmc2", "newmark", "hht2"}) {
@@ -209,7 +211,7 @@ TEST(HeldLinks, CarryBeams) {
   }
 }
 
-// What pushes a held link is a part of what holds it, scene's load or wrench, over a checkpoint, too.
+// A force on a held link counts in the effort that holds it, whether it is a load of the scene or a wrench.
 TEST(HeldLinks, AreHeldAgainstWrenches) {
   SceneBuilder b = spatial_arm(Kept::Held);
   b.scene.gravity.setZero();
@@ -220,7 +222,7 @@ TEST(HeldLinks, AreHeldAgainstWrenches) {
   ASSERT_EQ(at_rest.link_names()[tool + 1], "tool");
   const Pose pose = at_rest.link_pose(tool + 1), turn = at_rest.link_pose(tool);
   const Vector3 axis = turn.orientation * Vector3::UnitX();
-  // A pure moment about the last held axis: nothing inboard of it has to move for a moment's balance at the start.
+  // A pure moment about the axis of the last held joint: it needs no motion of the links inboard of it at the start.
   AppliedWrench wrench;
   wrench.link = tool + 1;
   wrench.wrench.moment = 2 * axis;
@@ -234,7 +236,7 @@ TEST(HeldLinks, AreHeldAgainstWrenches) {
   Simulation same(loaded.scene);
   advance(same, 3);
   EXPECT_NEAR(pushed.effort(3), same.effort(3), 1e-12);
-  EXPECT_LT(pushed.effort(3), -0.5);  // against the moment, but for what the links' inertia takes
+  EXPECT_LT(pushed.effort(3), -0.5);  // against the moment, less the share that accelerates the links
   EXPECT_LT((pose.position - at_rest.link_pose(tool + 1).position).norm(), 1e-15);
 
   SceneBuilder driven = b;
@@ -243,11 +245,12 @@ TEST(HeldLinks, AreHeldAgainstWrenches) {
   Simulation reference(driven.scene);
   reference.apply_wrenches({wrench});
   advance(reference, 3);
-  // Of second order, as the motion has it in three steps of 1e-3 s.
+  // An error of second order of the motion, in three steps of 1e-3 s.
   EXPECT_NEAR(pushed.effort(3), reference.effort(3), 1e-4);
 }
 
-// Who needs a row of his own, or is acted upon by what the links do not tell, is driven.
+// A joint is driven instead of held if it needs a row of its own, or if something acts on it that is not known from the
+// links.
 TEST(HeldLinks, AreThoseOfPlainJointsAlone) {
   const auto held = [](const auto& change) {
     SceneBuilder b = spatial_arm(Kept::Held);
@@ -269,7 +272,7 @@ TEST(HeldLinks, AreThoseOfPlainJointsAlone) {
   EXPECT_EQ(held([](SceneBuilder& b) { b.sensor("s", scene::SensorKind::Wrench, "tool"); }),
             (Names{"elbow", "lift", "turn"}));
   EXPECT_EQ(held([](SceneBuilder& b) { b.scene.joints[1].friction_law.coefficient = 0.1; }), (Names{"lift", "turn"}));
-  // What is inboard of a driven joint carries nothing of what hangs on that.
+  // A link inboard of a driven joint cannot take over the links that hang on this joint.
   EXPECT_EQ(held([](SceneBuilder& b) {
               auto spring = std::make_shared<scene::PointSpring>();
               spring->from = "world";
@@ -280,7 +283,7 @@ TEST(HeldLinks, AreThoseOfPlainJointsAlone) {
             (Names{"elbow", "lift"}));
 }
 
-// Who asks what would be if a held joint moved is told.
+// Linear models with the motion of a held joint as input or output are the same as with a driven joint.
 TEST(HeldLinks, MoveInLinearModels) {
   Simulation held = simulated(spatial_arm(Kept::Held), "em"), driven = simulated(spatial_arm(Kept::Driven), "em");
   for (const LinearisedAbout about : {LinearisedAbout::Rest, LinearisedAbout::Instant}) {
@@ -301,7 +304,7 @@ TEST(HeldLinks, MoveInLinearModels) {
   }
 }
 
-// So is who pushes what they carry, or drives the other joints.
+// The same with a wrench on the carried links, and with a drive and a servo on another joint.
 TEST(HeldLinks, MoveInLinearModelsWithWrenchesAndServos) {
   AppliedWrench wrench;
   wrench.link = 5;
@@ -337,8 +340,8 @@ TEST(HeldLinks, MoveInLinearModelsWithWrenchesAndServos) {
   }
 }
 
-// A joint that is held about an axis in the plane of motion does not leave it: here a hand that is the same on both
-// sides.
+// A joint that is held about an axis in the plane of motion does not end the motion in the plane. Here it carries a
+// hand that is symmetric to the plane.
 TEST(HeldLinks, StayInThePlaneOfMotion) {
   const auto pendulum = [](Kept kept) {
     SceneBuilder b;
@@ -360,7 +363,7 @@ TEST(HeldLinks, StayInThePlaneOfMotion) {
   EXPECT_NEAR(held.effort(1), 0, 1e-12);
 }
 
-// A checkpoint says on which links wrenches act.
+// The link on which a wrench acts is part of a checkpoint.
 TEST(HeldLinks, AreHeldTheSameAfterACheckpoint) {
   const SceneBuilder b = spatial_arm(Kept::Held);
   SimulationOptions options;

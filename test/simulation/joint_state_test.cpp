@@ -1,4 +1,4 @@
-// Joint coordinates that somebody puts elsewhere, or gives other velocities.
+// Tests set_joint_state(), which gives joint coordinates new positions or velocities during a run.
 #include <cmath>
 #include <limits>
 
@@ -14,20 +14,20 @@ namespace {
 
 using scene::JointKind;
 
-constexpr double kRoundOff = 1e-13;           ///< of numbers about 1 that some hundred operations have led to
+constexpr double kRoundOff = 1e-13;           ///< of numbers about 1, after some hundred operations
 constexpr double kStep = 0.002, kTime = 0.2;  // [s]
-/// Of motions from starts that differ by round-off, over a hundred steps: each solves to a residual of Newton's method
-/// that was below its tolerance of 1e-11 before the last, quadratic, update.
+/// Difference of two motions over a hundred steps, whose starts differ by round-off. Newton's method makes each step
+/// until the residual is below its tolerance of 1e-11; after that comes a last update, which converges quadratically.
 constexpr double kSameMotion = 1e-10;
-/// Accelerations of the Newmark family come from a step that is shorter by 1e-2: round-off over its square, and what
-/// that makes of the way.
+/// The Newmark family computes accelerations at the start from a step that is shorter by the factor 1e-2. Their error
+/// is round-off over the square of this step; the rest is the distance that it makes over kTime.
 constexpr double kSameAcceleration = 1e-16 / (1e-4 * kStep * kStep) * kTime * kTime / 2;
-/// What a scheme's own velocities lack to fit to joints is of second order, h^2/12 times third derivatives; about those
-/// of an arm that falls and swings at 2 Hz [m/s].
+/// A scheme's own velocities fit to the joints with an error of second order: h^2/12 times third derivatives. These are
+/// estimated for an arm that falls and swings at 2 Hz [m/s].
 constexpr double kUnfitVelocity = kStep * kStep / 12 * 10 * 4 * 4 * M_PI * M_PI;
 
-/// A shoulder with an elastic gear and a servo, a flexible arm, an elbow that a slider mimics, a ball joint, and a body
-/// that flies.
+/// A mechanism of a shoulder with elastic gear and servo, a flexible arm, an elbow that a slider mimics, a ball joint,
+/// and a free body.
 SceneBuilder arm() {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
@@ -112,7 +112,7 @@ TEST(JointState, WhatIsNotNamedStaysAsItIs) {
   run(simulation, kTime);
   const State before = state_of(simulation);
   const double energy = simulation.energies().total();
-  const double energy_scale = 4.6 * 4;  // of bodies of 4.6 kg, at up to 4 m/s
+  const double energy_scale = 4.6 * 4;  // kinetic energy of bodies of 4.6 kg in all, at up to 4 m/s
   simulation.set_joint_state({});
   const State& after = state_of(simulation);
   for (std::size_t i = 0; i < before.nodes.size(); ++i) {
@@ -146,7 +146,7 @@ TEST(JointState, StrainsAndTwistsOfGearsGoWithWhatIsMoved) {
   EXPECT_EQ(simulation.time(), time);
   EXPECT_NEAR(account(simulation), books, kRoundOff * (1 + std::abs(books)));
   run(simulation, kTime);
-  EXPECT_NEAR(account(simulation), books, 1e-9 * (1 + std::abs(books)));  // what Newton's tolerance leaves
+  EXPECT_NEAR(account(simulation), books, 1e-9 * (1 + std::abs(books)));  // the error of Newton's tolerance
 }
 
 TEST(JointState, WhatCannotBeSetIsRefusedAndChangesNothing) {
@@ -178,7 +178,7 @@ TEST(JointState, WhatCannotBeSetIsRefusedAndChangesNothing) {
 
 // ---------------------------------------------------------------- closed loops
 
-/// A parallelogram of rigid links, or with a flexible rocker.
+/// A parallelogram of rigid links, optionally with a flexible rocker.
 Simulation parallelogram(bool is_flexible) {
   SceneBuilder b;
   b.body("crank", 1, {0, 0, 0.1}, 1e-3 * Matrix3::Identity());
@@ -203,15 +203,15 @@ TEST(JointState, LoopsStayClosedOrAreRefused) {
     simulation.set_joint_state(wanted);
     const double books = account(simulation);
     run(simulation, kTime);
-    EXPECT_NEAR(account(simulation), books, 1e-9) << is_flexible;  // no loop was torn, nothing is strained
+    EXPECT_NEAR(account(simulation), books, 1e-9) << is_flexible;  // no loop was opened, nothing is strained
     EXPECT_NEAR(simulation.position(1), -simulation.position(0), is_flexible ? 1e-3 : 1e-7);
     if (is_flexible) continue;
     EXPECT_THROW(simulation.set_joint_state({{0, {}, 5.0}}), std::invalid_argument);
   }
 }
 
-/// In 1 % of a step, from which the Newmark family takes the accelerations of a start, it turns by 1e-5 s times the
-/// speed: at 1e6 rad/s by more than a step can do, and nothing is halved here.
+/// A rotor under the Newmark family, which computes the accelerations at the start from a step of 1 %, here 1e-5 s. At
+/// 1e6 rad/s the rotor turns further in it than a step allows, and halving is switched off.
 scene::SceneDescription rotor_at(double speed) {
   SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
@@ -229,11 +229,12 @@ TEST(Start, WarnsWhereAccelerationsCannotBeFound) {
   const Simulation racing(rotor_at(1e6));
   ASSERT_EQ(racing.start_warnings().size(), 1u);
   const std::string text = racing.start_warnings()[0].text();
-  EXPECT_NE(text.find("warning: start: begins with accelerations of zero"), std::string::npos) << text;
+  EXPECT_NE(text.find("warning: start: has zero accelerations"), std::string::npos) << text;
   EXPECT_NE(text.find("cannot be found: "), std::string::npos) << "the reason: " << text;
 }
 
-/// Without any damping Newmark's rule has a double pendulum that turns at 3 rad/s stand still after four seconds.
+/// Without any damping, Newmark's rule with gamma 0.5 makes a double pendulum that turns at 3 rad/s stand still after
+/// four seconds. So there is a warning.
 TEST(Start, WarnsOfUndampedAccelerationsAcrossJoints) {
   scene::SceneDescription scene = rotor_at(1);
   for (const double gamma : {0.5, 0.51}) {

@@ -1,4 +1,4 @@
-// Linear models against closed forms, and against what the simulator itself does.
+// Tests linear models against closed forms, and against runs of the simulator.
 #include "flexarm/simulation/linear_model.h"
 
 #include <array>
@@ -30,8 +30,8 @@ Simulation simulation_of(const std::string& text) {
 // ---------------------------------------------------------------- closed forms
 
 std::string rotating_cantilever(double speed) {
-  // EI = m = L = 1, so that speeds and frequencies are the dimensionless ones; so thin that shear and stretching change
-  // frequencies by less than 1e-6: EI / (EA L^2) = EI / (GA L^2) = 1e-8.
+  // EI = m = L = 1, so that speeds and frequencies are dimensionless. The beam is so thin that shear and stretching
+  // change frequencies by less than 1e-6: EI / (EA L^2) = EI / (GA L^2) = 1e-8.
   return fmt::format(R"(<robot name="rotor"><link name="world"/>
     <joint name="hub" type="continuous"> <parent link="world"/> <child link="blade"/> <axis xyz="0 0 1"/> </joint>
     <link name="blade"> <beam elements="8" order="3"> <centerline> <line to="1 0 0"/> </centerline>
@@ -41,8 +41,9 @@ std::string rotating_cantilever(double speed) {
                      speed);
 }
 
-// Wright, Smith, Thresher and Wang, Vibration modes of centrifugally stiffened beams, J. Appl. Mech. 49, 1982:
-// flapwise, no hub radius. To seven digits by the method of Ritz with twenty polynomials.
+// Published frequencies of flapwise bending without hub radius: Wright, Smith, Thresher and Wang, Vibration modes of
+// centrifugally stiffened beams, J. Appl. Mech. 49, 1982. The seven digits come from the method of Ritz with twenty
+// polynomials.
 TEST(LinearModel, RotatingCantilever) {
   const std::vector<std::pair<double, std::array<double, 3>>> published = {{0, {3.516015, 22.034492, 61.697214}},
                                                                            {2, {4.137320, 22.614922, 62.273184}},
@@ -61,7 +62,8 @@ TEST(LinearModel, RotatingCantilever) {
   }
 }
 
-// A disc on a shaft that may tilt: theta'' It + Ip speed (i theta') + k theta = 0 for theta = about x + i about y.
+// A disc on a shaft that may tilt: It theta'' + Ip speed (i theta') + k theta = 0, where theta is the rotation about x
+// plus i times that about y.
 TEST(LinearModel, WhirlingDisc) {
   const double transverse = 2, polar = 3, stiffness = 50, speed = 7;
   LinearRequest request;
@@ -85,7 +87,7 @@ TEST(LinearModel, WhirlingDisc) {
   EXPECT_NEAR(found[0].value.real(), 0, 1e-9);
 }
 
-// Stiffness-proportional damping eta: pi f eta of critical.
+// Stiffness-proportional damping eta gives the damping ratio pi f eta.
 TEST(LinearModel, KelvinVoigtDamping) {
   const double eta = 1e-4;
   const LinearModel model = linearise(simulation_of(fmt::format(R"(<robot name="cantilever"><link name="world"/>
@@ -96,7 +98,8 @@ TEST(LinearModel, KelvinVoigtDamping) {
     <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)",
                                                                 eta)));
   int seen = 0;
-  // Those that two damping ratios of nearly one make are alike, and their difference has half the digits.
+  // Strongly damped modes are left out: near a damping ratio of 1, the two poles of a mode nearly coincide, and lose
+  // half of the digits.
   for (const Pole& pole : poles(model)) {
     if (pole.damping_ratio() > 0.9) continue;
     const double undamped = std::abs(pole.value) / (2 * kPi);
@@ -107,7 +110,7 @@ TEST(LinearModel, KelvinVoigtDamping) {
 }
 
 std::string gauged_cantilever(const std::string& load) {
-  // The centre of mass, at which nodes stand, is off the line, about which strains and forces are.
+  // The nodes stand at the centre of mass. It lies off the reference line, to which strains and forces refer.
   return R"(<robot name="cantilever"><link name="world"/>
     <joint name="clamp" type="fixed"> <parent link="world"/> <child link="beam"/> </joint>
     <link name="beam"> <beam elements="3" order="2"> <centerline> <line to="1.2 0 0"/> </centerline>
@@ -121,13 +124,13 @@ std::string gauged_cantilever(const std::string& load) {
          load + "</simulation> </robot>";
 }
 
-/// Outputs per unit of a constant input.
+/// Outputs per unit of a constant input, in the limit of long times.
 VectorXd static_gain(const LinearModel& model) {
   return model.d - model.c * test::solution(model.a, model.b);
 }
 
-// Bending by a force P at the tip: M(s) = P (L - s), which elements have exactly; the fibre at y is strained by -y
-// M/EI.
+// A force P at the tip gives the bending moment M(s) = P (L - s), which the elements represent exactly. The fibre at y
+// has the strain -y M/EI.
 TEST(LinearModel, StrainGaugeByBeamTheory) {
   LinearRequest request;
   request.inputs = {"wrench:beam/tip:fy"};
@@ -139,15 +142,16 @@ TEST(LinearModel, StrainGaugeByBeamTheory) {
                                       "section_force:section:my", "section_force:section:mz"}));
   const VectorXd gain = static_gain(model);
   const double arm = 1.2 - 0.31;
-  // Round-off of displacements is 1e-16 times the ratio of the squares of frequencies, 1e5; forces are differences of
-  // displacements of 1e-3 m times 1e6 N over an element of 0.2 m.
+  // Tolerance: the round-off of displacements is 1e-16 times the ratio of squared frequencies, 1e5. Forces are
+  // differences of displacements of 1e-3 m over an element of 0.2 m, times 1e6 N.
   EXPECT_NEAR(gain[0], -0.02 * arm / 300, 1e-7 * arm / 300);
   EXPECT_NEAR(gain[2], 1, 1e-7);
   EXPECT_NEAR(gain[6], arm, 1e-7);
   for (const int none : {1, 3, 4, 5}) EXPECT_NEAR(gain[none], 0, 1e-7);
 }
 
-// Of a strongly bent beam: differences of equilibria under loads that differ by h are off by h^2.
+// The same for a strongly bent beam, against differences of equilibria under loads that differ by h, with an error of
+// h^2.
 TEST(LinearModel, StrainGaugeOfABentBeam) {
   const double force = 150, way = 1e-2;
   const auto load = [](double value) {
@@ -177,7 +181,7 @@ TEST(LinearModel, StrainGaugeOfABentBeam) {
 constexpr const char* kBody = R"(<inertial> <origin xyz="{0} 0.1 -0.05"/> <mass value="2"/>
   <inertia ixx="0.1" iyy="0.2" izz="0.25" ixy="0.01" ixz="0.02" iyz="-0.03"/> </inertial>)";
 
-/// Two rigid links behind each other, with joints about different axes, and one that travels.
+/// Two rigid links in series with joints about different axes, and a third one on a prismatic joint.
 std::string rigid_arm(const std::string& more = "", const std::string& gravity = "1 2 -9.81") {
   const std::string body = fmt::format(kBody, 0.4);
   return R"(<robot name="arm"><link name="world"/>
@@ -194,7 +198,8 @@ std::string rigid_arm(const std::string& more = "", const std::string& gravity =
          gravity + R"("/> )" + more + R"( </simulation> </robot>)";
 }
 
-/// y'' of the motion that is, by the model itself: it has the forces, not their derivatives.
+/// Exact accelerations y'' at present, from the drift of the linear model. The drift contains the forces, but not their
+/// derivatives, which are to be tested.
 VectorXd accelerations(const Simulation& simulation) {
   LinearRequest request;
   request.about = LinearisedAbout::Instant;
@@ -202,8 +207,8 @@ VectorXd accelerations(const Simulation& simulation) {
   return drift.tail(drift.size() / 2);
 }
 
-/// A of the present motion against central differences of the accelerations by positions and velocities of joints:
-/// their truncation is of second order in a way of 1e-4, their round-off 1e-12.
+/// Compares the state matrix A at present with central differences of accelerations with respect to joint positions and
+/// velocities. Their step of 1e-4 gives a truncation error of second order and a round-off of 1e-12.
 void expect_exact_state_matrix(const std::string& scene) {
   Simulation simulation = simulation_of(scene);
   LinearRequest request;
@@ -233,9 +238,9 @@ TEST(LinearModel, StateMatrixOfMovingRigidArm) {
   expect_exact_state_matrix(rigid_arm());
 }
 
-/// Outputs after a run from equilibrium under a constant input: of the simulator, and of the linear model in steps of
-/// the same implicit midpoint rule that the energy-momentum scheme is where motions are small. So they differ by what
-/// is not linear alone, whatever the step.
+/// Difference of outputs between simulator and linear model after a run from equilibrium under a constant effort. The
+/// linear model is stepped by the implicit midpoint rule, to which the energy-momentum scheme reduces for small
+/// motions. So the difference comes only from nonlinearity, whatever the step.
 VectorXd defect(const std::string& text, const std::string& joint, const std::string& output, double effort,
                 double step = 0.01) {
   const int steps = static_cast<int>(std::lround(0.4 / step));
@@ -273,7 +278,7 @@ VectorXd defect(const std::string& text, const std::string& joint, const std::st
   return outputs(simulation) - start - model.c * state;
 }
 
-/// The defect falls as the square of the amplitude.
+/// Expects the difference of defect() to fall with the square of the amplitude.
 void expect_quadratic_defect(const std::string& text, const std::string& joint, const std::string& output,
                              double effort) {
   const double large = defect(text, joint, output, effort).norm(),
@@ -284,7 +289,8 @@ void expect_quadratic_defect(const std::string& text, const std::string& joint, 
 constexpr const char* kBeam = R"(<beam elements="2" order="2"> <centerline> <line to="1 0 0"/> </centerline>
   <section ea="1e4" ga2="4e3" ga3="4e3" gj="8" ei2="10" ei3="12" mass="1" j1="2e-3" j2="1e-3" j3="1e-3"/>
   <damping stiffness_proportional="{}" mass_proportional="0.3"/> </beam>)";
-/// Without the damper of strains: over a step the scheme's follows another rule than the midpoint's, see below.
+/// A beam, by default without damping of strains: the scheme integrates this damping by another rule than the midpoint
+/// rule (see DefectOfDampedArmFallsWithTheStep).
 std::string beam(double stiffness_damping = 0) {
   return fmt::format(kBeam, stiffness_damping);
 }
@@ -306,7 +312,8 @@ TEST(LinearModel, DefectOfFlexibleArmIsQuadratic) {
   expect_quadratic_defect(flexible_arm(0), "shoulder", "load", 0.5);
 }
 
-// With dampers of strains a linear part remains that the step makes, of second order.
+// With damping of strains there remains a part of the defect that is linear in the amplitude. It falls with the square
+// of the step.
 TEST(LinearModel, DefectOfDampedArmFallsWithTheStep) {
   const double effort = 1e-3;
   const double large = defect(flexible_arm(2e-3), "shoulder", "load", effort, 0.01).norm();
@@ -314,7 +321,8 @@ TEST(LinearModel, DefectOfDampedArmFallsWithTheStep) {
   EXPECT_GT(std::log(large / small) / std::log(4.0), 1.9) << large << ", " << small;
 }
 
-// Without weight: a carriage on a bent rail leaves its line by what the step's contact makes of it, 3e-7 m here.
+// Without gravity: on a rail bent by a weight, the contact in a step would move the carriage off its line, here by 3e-7
+// m.
 TEST(LinearModel, DefectOfSliderIsQuadratic) {
   expect_quadratic_defect(fmt::format(R"(<robot name="slider"><link name="world"/>
     <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="rail"/> <axis xyz="0 1 0"/> </joint>
@@ -329,7 +337,7 @@ TEST(LinearModel, DefectOfSliderIsQuadratic) {
 }
 
 TEST(LinearModel, DefectOfFourBarIsQuadratic) {
-  // A parallelogram of rigid bars that a loop joint closes, on a spring; its coupler is a beam.
+  // A parallelogram of rigid bars with a spring, closed by a loop joint. Its coupler is a beam.
   expect_quadratic_defect(fmt::format(R"(<robot name="four_bar"><link name="world"/>
     <joint name="crank_joint" type="continuous"> <parent link="world"/> <child link="crank"/> <axis xyz="0 1 0"/> </joint>
     <link name="crank">{0}</link>
@@ -345,7 +353,7 @@ TEST(LinearModel, DefectOfFourBarIsQuadratic) {
                           "crank_joint", "coupler", 1);
 }
 
-// Ringing that steps do not resolve, and the same motion in steps that do.
+// The four-bar vibrates at a frequency that the first step size does not resolve, and the second one does.
 TEST(LinearModel, SaysWhereStepsAreTooLong) {
   scene::ReadResult result = scene::read_scene_file(test::source_path("config/examples/four_bar.urdf"));
   ASSERT_TRUE(result.scene);

@@ -1,4 +1,5 @@
-// Linear models about instants of a motion that motors and controllers make: closed forms of a rotor on a hinge.
+// Tests linear models about an instant of a motion with motors and controllers, against closed forms of a rotor on a
+// hinge.
 #include <cmath>
 #include <stdexcept>
 
@@ -12,11 +13,12 @@
 namespace flexarm {
 namespace {
 
-/// The derivative of the set point is a central difference: eps^(2/3)/6 of the third derivative, 0.3 5^3.
+/// The derivative of the set point is computed as a central difference. Its error is eps^(2/3)/6 times the third
+/// derivative, 0.3 5^3.
 constexpr double kRateError = 3e-10;
 constexpr double kInertia = 2, kRotor = 0.4;  // of the link and of the rotor about the hinge [kg m^2]
 
-/// A wheel on a hinge, which a motor turns, after a quarter of a second.
+/// A wheel on a hinge that is driven by a motor, after a quarter of a second.
 Simulation turning_wheel(const std::string& drive, const std::string& servo) {
   scene::ReadResult result = scene::read_scene_text(fmt::format(R"(<robot name="wheel"> <link name="world"/>
         <joint name="hinge" type="continuous"> <parent link="world"/> <child link="wheel"/> <axis xyz="0 0 1"/> </joint>
@@ -48,7 +50,7 @@ double set_rate(double time) {
   return 1.5 * std::cos(5 * time);
 }
 
-// (I + J) q'' = kp (s - q) + kd (s' - q')
+// Closed form: (I + J) q'' = kp (s - q) + kd (s' - q').
 TEST(LinearMotors, SetPointThatMoves) {
   const Simulation simulation = turning_wheel("", kFollowing);
   const LinearModel model = about_now(simulation);
@@ -59,7 +61,7 @@ TEST(LinearMotors, SetPointThatMoves) {
   EXPECT_NEAR(model.a(1, 1), -2 / (kInertia + kRotor), 1e-12 * 30);
 }
 
-// What a program commands is added to what the controller asks for.
+// A commanded effort is added to that of the controller.
 TEST(LinearMotors, EffortBesideTheController) {
   Simulation simulation = turning_wheel("", kFollowing);
   const double alone = about_now(simulation).drift[1];
@@ -67,7 +69,7 @@ TEST(LinearMotors, EffortBesideTheController) {
   EXPECT_NEAR(about_now(simulation).drift[1] - alone, 0.7 / (kInertia + kRotor), 1e-13);
 }
 
-// With mode velocity: (I + J) q'' = kp (s - q').
+// Closed form in mode velocity: (I + J) q'' = kp (s - q').
 TEST(LinearMotors, SetSpeed) {
   const Simulation simulation = turning_wheel("", R"(mode="velocity" kp="3")");
   const LinearModel model = about_now(simulation);
@@ -77,7 +79,7 @@ TEST(LinearMotors, SetSpeed) {
   EXPECT_NEAR(model.a(1, 1), -3 / (kInertia + kRotor), 1e-12 * 3);
 }
 
-// The sum of what is asked for is cut: then neither place nor rate matters.
+// If the limit cuts the total effort, it depends neither on position nor on rate.
 TEST(LinearMotors, CutByALimit) {
   const Simulation simulation = turning_wheel(R"(effort_limit="0.3")", kFollowing);
   const LinearModel model = about_now(simulation);
@@ -89,7 +91,7 @@ TEST(LinearMotors, CutByALimit) {
   EXPECT_EQ(model.a(1, 1), 0);
 }
 
-// Parts above the limit whose sum is below it are not cut.
+// A part of the effort exceeds the limit, but the sum of all parts does not. So nothing is cut.
 TEST(LinearMotors, LimitOfTheSum) {
   const Simulation simulation = turning_wheel(R"(effort_limit="50")", R"(mode="position" kp="30" kd="200")");
   const LinearModel model = about_now(simulation);
@@ -101,7 +103,7 @@ TEST(LinearMotors, LimitOfTheSum) {
   EXPECT_NEAR(model.a(1, 1), -200 / (kInertia + kRotor), 1e-12 * 200);
 }
 
-// I q'' = k (r - q) + d (r' - q'),  J r'' = kp (s - r) + kd (s' - r') - I q''
+// Closed form: I q'' = k (r - q) + d (r' - q'),  J r'' = kp (s - r) + kd (s' - r') - I q''.
 TEST(LinearMotors, RotorBehindAnElasticGear) {
   const double stiffness = 500, damping = 3;
   const Simulation simulation = turning_wheel(R"(stiffness="500" damping="3")", kFollowing);

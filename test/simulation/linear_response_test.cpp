@@ -1,4 +1,4 @@
-// Responses of linear models, and of smaller ones that replace them, against closed forms and the defining equations.
+// Tests responses of linear models and of reduced models, against closed forms and the defining equations.
 #include "flexarm/simulation/linear_response.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// y'' + 2 ratio frequency y' + frequency^2 y = u; outputs y, y' and y''.
+/// The model y'' + 2 ratio frequency y' + frequency^2 y = u with outputs y, y' and y''.
 LinearModel oscillator(double frequency, double ratio) {
   LinearModel model;
   model.positions = 1;
@@ -35,7 +35,7 @@ LinearModel oscillator(double frequency, double ratio) {
   return model;
 }
 
-/// A damped beam of three elements, by its tip.
+/// A damped beam of three elements with input and outputs at its tip.
 LinearModel cantilever(const std::string& joint) {
   scene::ReadResult result = scene::read_scene_text(R"(<robot name="cantilever"><link name="world"/>
     <joint name="root" type=")" + joint + R"("> <parent link="world"/> <child link="beam"/> <axis xyz="0 0 1"/> </joint>
@@ -57,7 +57,7 @@ std::vector<double> logarithmic(double from, double to, int count) {
   return values;
 }
 
-// 1 / (w0^2 - w^2 + 2 i z w0 w), whose round-off the resonance makes larger by 1/(2 z).
+// The exact response is 1 / (w0^2 - w^2 + 2 i z w0 w). Near resonance its round-off grows by 1/(2 z).
 TEST(FrequencyResponse, OfAnOscillatorByFormula) {
   const double natural = 7, ratio = 0.01;
   const std::vector<double> frequencies = logarithmic(0.01, 100, 200);
@@ -68,12 +68,13 @@ TEST(FrequencyResponse, OfAnOscillatorByFormula) {
     const Complex expected = 1.0 / (natural * natural + 2 * ratio * natural * rate + rate * rate);
     EXPECT_LT(std::abs(response.gains[n](0, 0) - expected), 1e-13 / ratio * std::abs(expected));
     EXPECT_LT(std::abs(response.gains[n](1, 0) - rate * expected), 1e-13 / ratio * std::abs(rate * expected));
-    // The acceleration is a difference of 1 and what the position's gain makes.
+    // The acceleration's gain is the difference of 1 and a multiple of the position's gain.
     EXPECT_LT(std::abs(response.gains[n](2, 0) - rate * rate * expected), 1e-13 / ratio * (1 + std::abs(expected)));
   }
 }
 
-// Elimination of the matrix as it stands loses as many digits as its largest entry is over the way to the next pole.
+// Elimination of the unscaled matrix loses digits: as many as its largest entry is larger than the distance to the next
+// pole.
 TEST(FrequencyResponse, SolvesItsEquations) {
   const LinearModel model = cantilever("fixed");
   for (const double frequency : {0.3, 2.0, 40.0}) {
@@ -91,7 +92,8 @@ TEST(FrequencyResponse, SolvesItsEquations) {
   }
 }
 
-// Where one mode is alone, within its half-power band, whose half width is the damping ratio of the frequency.
+// The peak of a well separated mode lies within its half-power band. Half its width is the damping ratio times the
+// frequency.
 TEST(FrequencyResponse, PeaksAtThePole) {
   const LinearModel model = cantilever("fixed");
   for (const Pole& pole : poles(model)) {
@@ -126,8 +128,8 @@ TEST(StepResponse, OfAnOscillatorByFormula) {
   EXPECT_THROW(step_response(oscillator(1, 1), 1, 0), std::invalid_argument);
 }
 
-// Poles of very different sizes: what is fast is there at once, what is slow keeps its digits but for those that 30
-// squarings lose.
+// Poles of very different sizes: the fast part is complete at once. The slow part keeps its digits, except those that
+// 30 squarings lose.
 TEST(StepResponse, OfAStiffModel) {
   LinearModel model = oscillator(1, 1);
   model.a = (MatrixXd(2, 2) << -1e6, 0, 0, -1).finished();
@@ -148,7 +150,7 @@ double largest_error(const LinearModel& whole, const LinearModel& small, const s
                           got = frequency_response(small, frequencies);
   double largest = 0;
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
-    // The largest singular value, by powers of the error's square.
+    // Largest singular value of the error, by power iteration with error^H error.
     const MatrixXcd error = got.gains[n] - expected.gains[n], square = error.adjoint() * error;
     Eigen::VectorXcd direction = Eigen::VectorXcd::Ones(square.cols());
     double value = 0;
@@ -163,7 +165,7 @@ double largest_error(const LinearModel& whole, const LinearModel& small, const s
   return largest;
 }
 
-// Of a single lag with the gain 1: 1/2.
+// The Hankel singular value of a first-order lag with the gain 1 is 1/2.
 TEST(ReducedModel, HankelSingularValueOfALag) {
   LinearModel model = oscillator(1, 1);
   model.a = MatrixXd::Constant(1, 1, -3);
@@ -178,8 +180,8 @@ TEST(ReducedModel, HankelSingularValueOfALag) {
   EXPECT_NEAR(same.model.a(0, 0), -3, 1e-13);
 }
 
-// Glover 1984: the error is at most twice the sum of what is left out, at any frequency; and there is one of at least
-// the largest of them.
+// Bounds by Glover 1984: the error at any frequency is at most twice the sum of the singular values that are left out.
+// At some frequency, it is at least the largest of them.
 TEST(ReducedModel, ErrorIsWithinItsBound) {
   const LinearModel model = cantilever("fixed");
   const std::vector<double> frequencies = logarithmic(0.01, 1e4, 300);
@@ -189,13 +191,13 @@ TEST(ReducedModel, ErrorIsWithinItsBound) {
     ASSERT_EQ(small.model.a.rows(), order);
     const VectorXd& values = small.hankel_singular_values;
     const double bound = 2 * values.tail(values.size() - order).sum();
-    // Round-off of the whole model's gains.
+    // The second term is round-off of the full model's gains.
     EXPECT_LT(largest_error(model, small.model, frequencies), bound + 1e-10 * values[0]) << order;
     for (const Pole& pole : poles(small.model)) EXPECT_LT(pole.value.real(), 0) << order;
   }
 }
 
-// A beam on a hinge that nothing holds: two poles at 0 stay, and the bound is that of the rest.
+// A free beam on a hinge: the two poles at 0 are kept, and the bound holds for the remaining part.
 TEST(ReducedModel, KeepsFreeMotions) {
   const LinearModel model = cantilever("continuous");
   const std::vector<double> frequencies = logarithmic(0.1, 1e4, 200);
@@ -210,9 +212,10 @@ TEST(ReducedModel, KeepsFreeMotions) {
 
 // ---------------------------------------------------------------- very thin beams
 
-constexpr double kYoung = 70e9, kDensity = 2700, kDamping = 1e-4;  // dampers of strains [s]
+constexpr double kYoung = 70e9, kDensity = 2700, kDamping = 1e-4;  // damping of strains [s]
 
-/// Of one metre, clamped; shear is stiffer than bending by the square of the length over the thickness.
+/// A clamped beam of 1 m. Its shear stiffness exceeds its bending stiffness by the squared ratio of length to
+/// thickness.
 LinearModel thin_beam(const std::string& section, const std::string& axis) {
   scene::ReadResult result = scene::read_scene_text(R"(<robot name="thin"><link name="world"/><link name="arm">
     <beam elements="12" order="2"> <centerline> <line to="1 0 0"/> </centerline> <orientation y="0 1 0"/>)" +
@@ -233,19 +236,19 @@ struct ThinBeam {
   std::string section, axis;
   double radius_of_gyration, area;                                                              // [m, m^2]
   double stiffness() const { return kYoung * area * radius_of_gyration * radius_of_gyration; }  // EI
-  /// Of the n-th mode of a cantilever (Euler and Bernoulli): n from 0 [1/s].
+  /// Frequency of the n-th mode (n from 0) of a cantilever after Euler and Bernoulli [1/s].
   double frequency(int n) const {
     const double known[] = {1.8751040687119611, 4.6940911329741746, 7.8547574382376126};
     const double root = n < 3 ? known[n] : (n + 0.5) * kPi;
     return root * root * std::sqrt(stiffness() / (kDensity * area));
   }
-  /// What the round-off of the shear's stiffness is beside that of bending: terms that cancel.
+  /// Relative round-off of the bending stiffness: it is a small difference of terms of the size of the shear stiffness.
   double round_off() const { return 100 * 2.2e-16 * 0.32 / (radius_of_gyration * radius_of_gyration); }
 };
 const ThinBeam kStrip = {R"(<rectangle width="0.03" height="0.0002"/>)", "z", 2e-4 / std::sqrt(12.0), 6e-6};
 const ThinBeam kWire = {R"(<circle radius="0.00005"/>)", "y", 2.5e-5, kPi * 25e-10};
 
-/// C (s - A)^-1 B by elimination with 64 bits of mantissa, of the matrices as they stand.
+/// C (s - A)^-1 B by elimination of the unscaled matrices, with 64 bits of mantissa.
 std::complex<long double> exact_gain(const LinearModel& model, Complex rate) {
   using Long = std::complex<long double>;
   using Matrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
@@ -274,8 +277,8 @@ std::complex<long double> exact_gain(const LinearModel& model, Complex rate) {
   return gain;
 }
 
-// The fastest of their motions are 1e12 times faster than the slowest one, which keeps its digits but for those that
-// the stiffness itself has lost.
+// The fastest motions are 1e12 times faster than the slowest one. The slowest one keeps its digits, except those that
+// are lost in the stiffness itself.
 TEST(ThinBeams, GainsAreThoseOfTheirEquations) {
   for (const ThinBeam& beam : {kStrip, kWire}) {
     const LinearModel model = thin_beam(beam.section, beam.axis);
@@ -287,21 +290,22 @@ TEST(ThinBeams, GainsAreThoseOfTheirEquations) {
       const Complex got = response.gains[n](0, 0);
       const double error = static_cast<double>(std::abs(std::complex<long double>(got.real(), got.imag()) - expected) /
                                                std::abs(expected));
-      EXPECT_LT(error, 10 * beam.round_off()) << beam.section << frequencies[n];  // near a pole or zero by so much more
+      // The factor is for frequencies near a pole or zero
+      EXPECT_LT(error, 10 * beam.round_off()) << beam.section << frequencies[n];
     }
-    // 1/(3 EI), which elements of that length do not miss by more than a thousandth.
+    // The static gain is 1/(3 EI); elements of this length miss it by at most a thousandth.
     EXPECT_NEAR(std::abs(response.gains[0](0, 0)) * 3 * beam.stiffness(), 1, 2e-3) << beam.section;
   }
 }
 
-// Dampers of strains: half of damping times frequency, of each mode that bends.
+// Damping of strains gives each bending mode the damping ratio damping * frequency / 2.
 TEST(ThinBeams, SlowPolesKeepTheirDamping) {
   for (const ThinBeam& beam : {kStrip, kWire}) {
     const std::vector<Pole> all = poles(thin_beam(beam.section, beam.axis));
     ASSERT_GT(all.size(), 4u);
     for (int n = 0; n < 3; ++n) {
       const double expected = 0.5 * kDamping * beam.frequency(n);
-      // The wire bends in two planes alike; the strip's other plane is stiffer by the square of 150.
+      // The wire bends equally in two planes. In its other plane, the strip is stiffer by the square of 150.
       const Pole& pole = all[static_cast<std::size_t>(beam.axis == "y" ? 2 * n : n)];
       EXPECT_NEAR(2 * kPi * pole.frequency() / beam.frequency(n), 1, 0.005) << beam.section << n;
       EXPECT_NEAR(pole.damping_ratio() / expected, 1, 0.006) << beam.section << n;
@@ -310,7 +314,8 @@ TEST(ThinBeams, SlowPolesKeepTheirDamping) {
   }
 }
 
-// A force on the tip that sets in: modes of the mass 1/4 of the beam's at the tip, each from rest to its own sag.
+// A force that sets in at the tip. Each mode has the modal mass 1/4 of the beam's, referred to the tip, and moves from
+// rest to its own static deflection.
 TEST(ThinBeams, StepResponseIsThatOfTheirModes) {
   for (const ThinBeam& beam : {kStrip, kWire}) {
     const double until = 1.5 * 2 * kPi / beam.frequency(0);
@@ -325,13 +330,13 @@ TEST(ThinBeams, StepResponseIsThatOfTheirModes) {
         const double wave = std::cos(damped * t) + decay / damped * std::sin(damped * t);
         expected += 4 / (kDensity * beam.area * rate * rate) * (1 - std::exp(-decay * t) * wave);
       }
-      // Frequencies of the elements are off by 2e-3 at most, and so is the phase, over three half waves.
+      // The elements' frequencies, and so the phases over three half waves, have errors of at most 2e-3.
       EXPECT_NEAR(response.outputs[i](0, 0), expected, 0.02 * sag) << beam.section << response.times[i];
     }
   }
 }
 
-// Slow poles decay, however fast the others do.
+// Slow poles of reduced models stay stable, although the fast poles are faster by many powers of ten.
 TEST(ThinBeams, SmallerModelsKeepTheBound) {
   const LinearModel model = thin_beam(kStrip.section, kStrip.axis);
   const double first = kStrip.frequency(0) / (2 * kPi);
@@ -340,7 +345,8 @@ TEST(ThinBeams, SmallerModelsKeepTheBound) {
     EXPECT_EQ(small.kept, 0);
     const VectorXd& values = small.hankel_singular_values;
     const double bound = 2 * values.tail(values.size() - order).sum();
-    // Of a single mode: gain at resonance over 2, that of the first one being 1/(2 ratio) times its sag.
+    // The Hankel singular value of a single mode is half its gain at resonance. The resonance of the first mode is its
+    // static deflection times 1/(2 ratio).
     const double resonance =
         4 / (kDensity * kStrip.area * std::pow(kStrip.frequency(0), 2)) / (kDamping * kStrip.frequency(0));
     EXPECT_NEAR(values[0] / (0.5 * resonance), 1, 0.02);

@@ -1,4 +1,4 @@
-// What joints that close loops do to both their links: with it, the forces on each body balance.
+// Tests the reactions of joints that close loops: with them, forces and moments on each body balance.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kStep = 1e-3;
 constexpr double kBalanced =
-    1e-10;  // of the largest force: tolerance of Newton's method, momenta's round-off over a step
+    1e-10;  // relative to the largest force: tolerance of Newton's method, and round-off of momenta over a step
 const Vector3 kGravity(0, 0, -9.81);
 
 enum Body { kCrank, kCoupler, kRocker, kBodies };
 constexpr std::array<const char*, kBodies> kNames = {"crank", "coupler", "rocker"};
 constexpr double kCrankMass = 0.4, kRockerMass = 0.6;
 
-/// How the loop is closed.
+/// The method that closes the loop, and the end of the loop joint at which it acts.
 enum class Closed { ByMultipliers, AtTheChildsEnd, AtTheParentsEnd };
 
 SceneBuilder four_bar(Closed closed) {
@@ -50,13 +50,13 @@ SceneBuilder four_bar(Closed closed) {
   return b;
 }
 
-/// Of all bodies, about the world's origin.
+/// Kinematics and momenta of all bodies at an instant, about the world's origin.
 struct Instant {
   std::array<Vector3, kBodies> origin, center, momentum, spin;
   std::array<double, kBodies> mass;
 };
 
-/// A rigid body has all its mass in one node.
+/// Sets the values of a rigid body, whose whole mass is at one node.
 void set_rigid(const Simulation& simulation, Body body, double mass, Instant& instant) {
   const Model& model = model_of(simulation);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -75,7 +75,7 @@ Instant instant_of(const Simulation& simulation) {
   Instant out;
   set_rigid(simulation, kCrank, kCrankMass, out);
   set_rigid(simulation, kRocker, kRockerMass, out);
-  // The coupler, rigid or not, is the rest.
+  // All remaining mass belongs to the coupler, rigid or flexible.
   double mass = 0;
   Vector3 moment = Vector3::Zero();
   for (std::size_t i = 0; i < model_of(simulation).nodes.size(); ++i) {
@@ -91,7 +91,7 @@ Instant instant_of(const Simulation& simulation) {
   return out;
 }
 
-/// {force, moment about the world's origin} in the last step; `sensor` is on `body`.
+/// {force, moment about the world's origin} on `body` in the last step, from the sensor with index `sensor`.
 Vector6 reaction(const Simulation& simulation, std::size_t sensor, Body body, const Instant& begin,
                  const Instant& end) {
   const auto first = 6 * static_cast<std::size_t>(model_of(simulation).sensors[sensor].reaction);
@@ -100,7 +100,8 @@ Vector6 reaction(const Simulation& simulation, std::size_t sensor, Body body, co
   return wrench;
 }
 
-/// Forces and moments on each body less the rates of its momenta, over the largest force and moment.
+/// Largest imbalance on a body: sum of forces and moments less the rates of momenta, relative to the largest force and
+/// moment.
 double imbalance(const Simulation& simulation, const Instant& begin, const Instant& end) {
   const auto transmitted = [&](std::size_t sensor, Body body) {
     return reaction(simulation, sensor, body, begin, end);
@@ -138,12 +139,12 @@ TEST_P(LoopReactions, BalanceEachBodyAsItMoves) {
 
 TEST_P(LoopReactions, BalanceEachBodyAtRest) {
   SceneBuilder b = four_bar(std::get<0>(GetParam()));
-  b.scene.motions.push_back({"crank", TimeFunction::parse("0"), {}});  // a motor holds it
+  b.scene.motions.push_back({"crank", TimeFunction::parse("0"), {}});  // a motor holds the crank
   Simulation simulation(b.scene);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   const Instant rest = instant_of(simulation);
   EXPECT_LE(imbalance(simulation, rest, rest), kBalanced);
-  // Samples are the same, about the links' origins.
+  // The sensor's samples are the same values, about the links' origins.
   const Vector6 hip = Eigen::Map<const Vector6>(state_of(simulation).transmitted.means[0].data() +
                                                 6 * model_of(simulation).sensors[3].reaction);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(simulation.sample(3).values[i], hip[i]);

@@ -1,4 +1,4 @@
-// Runs that have no derivatives, or have them no more.
+// Tests runs without sensitivities: requests that are refused, and events in a run after which derivatives are lost.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(LostSensitivities, ParametersThatHaveNoneAreRefused) {
   const Scene scene{with_scheme(flexible_arm("0 0 1"), "em", 2e-3)};
   EXPECT_EQ(refusal(scene, "stiffnes"),
             "unknown parameter 'stiffnes': expected one of young, payload, damping, length, elements, turn");
-  EXPECT_NE(refusal(scene, "elements").find("the run cannot be differentiated by parameter 'elements'"),
+  EXPECT_NE(refusal(scene, "elements").find("the run cannot be differentiated with respect to parameter 'elements'"),
             std::string::npos)
       << refusal(scene, "elements");
   std::string text = with_scheme(kPendulum, "em", 5e-3);
@@ -45,7 +45,7 @@ TEST(LostSensitivities, WhereAStepFails) {
   EXPECT_EQ(simulation.time(), 0);
 }
 
-// What slides leaves a rail at its end, 0.1 m ahead: in the fourth step.
+// The slider leaves the rail at its end, 0.1 m ahead, in the fourth step.
 TEST(LostSensitivities, WhereASliderLeavesItsLine) {
   const Scene scene{R"(<robot name="rail"> <parameter name="speed" value="3"/> <link name="world"/>
     <joint name="mount" type="fixed"> <parent link="world"/> <child link="rail"/> </joint>
@@ -65,7 +65,7 @@ TEST(LostSensitivities, WhereASliderLeavesItsLine) {
   EXPECT_EQ(sensitivities.lost(), "a slider has left its line before t = 0.04 s");
 }
 
-// A stiff cantilever under a step of force, in steps of some periods of its lowest mode: Recovery has more of them.
+// A stiff cantilever under a step force, with steps of several periods of its lowest mode, as in recovery_test.cpp.
 TEST(LostSensitivities, WhereAStepIsDoneByAnotherScheme) {
   constexpr double kStep = 1.8;
   SceneBuilder b;

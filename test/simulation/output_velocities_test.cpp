@@ -1,4 +1,5 @@
-// The rule that turns increments over steps into rates at their end.
+// Tests LastSteps::rate_at_end(), which computes published rates at the end of a step from increments over the last
+// steps.
 #include "simulation/published_motion.h"
 
 #include <cmath>
@@ -16,7 +17,7 @@ constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
 
 using Rate = Eigen::Matrix<double, 1, 1>;
 
-/// Of a scalar position x(t), over steps of these lengths that end at `end`.
+/// Rate of a scalar position x(t) at `end`, from steps of these lengths, the newest first.
 template <class Position>
 double rate(const Position& x, double end, const std::array<double, 4>& lengths, int count = 4) {
   LastSteps steps;
@@ -42,7 +43,7 @@ TEST(RateAtEnd, IsExactForCubicsOverAnySteps) {
        {std::array<double, 4>{0.1, 0.1, 0.1, 0.1}, {0.1, 0.2, 0.05, 0.1}, {0.2, 0.1, 0.1, 0.05}})
     for (const int count : {3, 4})
       EXPECT_NEAR(rate(cubic, 2, lengths, count), cubic_rate(2), kRoundOff * cubic(2) / 0.05);
-  // As the parts of a composed step: the third one ran backwards.
+  // Lengths as in a composed step, whose third part runs backwards.
   EXPECT_NEAR(rate(cubic, 2, {0.0414, 0.0414, -0.0658, 0.0414}), cubic_rate(2), 4 * kRoundOff * cubic(2) / 0.0171);
 }
 
@@ -52,10 +53,10 @@ TEST(RateAtEnd, IsExactForParabolasAfterTwoSteps) {
 }
 
 TEST(RateAtEnd, IsTheMeanAfterAJump) {
-  // A body at rest that is thrown: nothing but the last mean is known.
+  // A body at rest is thrown: only the mean rate of the last step is usable.
   const auto thrown = [](double t) { return t < 0 ? 0 : 2 * t; };
   EXPECT_NEAR(rate(thrown, 0.1, {0.1, 0.1, 0.1, 0.1}), 2, kRoundOff * 2);
-  // One that comes to a steady motion, and one that stays at rest: no change, whatever was before.
+  // A body that comes to a steady motion or to rest: the rate equals the last two mean rates, whatever was before.
   LastSteps steps;
   steps.length = {0.5, 0.5, 0.5, 0.5};
   for (const int count : {3, 4})
@@ -63,19 +64,19 @@ TEST(RateAtEnd, IsTheMeanAfterAJump) {
       steps.count = count;
       EXPECT_EQ(steps.rate_at_end<1>({Rate(speed), Rate(speed), Rate(1), Rate(1)})[0], speed);
     }
-  // A force that jumps in the last step but one: half of what it does to the mean is in each of both steps. That is
-  // no acceleration that goes on.
+  // If a force jumps in the last step but one, half of its effect on the mean rate is in each of two steps. This must
+  // not be extrapolated as an acceleration.
   EXPECT_EQ(steps.rate_at_end<1>({Rate(1.5), Rate(0.5), Rate(0), Rate(0)})[0], 1.5);
 }
 
-/// What rings with amplitude 1 in the mean rates rings no more in the result.
+/// An oscillation whose mean rates have the amplitude 1 is not amplified in the result.
 TEST(RateAtEnd, DoesNotAmplifyWhatRings) {
   const auto ringing = [](double t) { return 0.05 * std::cos(kPi * t / 0.1); };  // mean rates +-1
   for (const double end : {1.0, 1.1})
     EXPECT_NEAR(std::abs(rate(ringing, end, {0.1, 0.1, 0.1, 0.1})), 1, kRoundOff / 0.1);
 }
 
-/// Of third order where the motion is smooth, of second order around extrema of the velocity.
+/// The rate is of third order where the motion is smooth, and of second order near extrema of the velocity.
 TEST(RateAtEnd, Order) {
   const auto worst = [](double step, double from, double to) {
     double error = 0;

@@ -1,4 +1,4 @@
-// Accelerations from the last four steps.
+// Tests the acceleration at the end of a step that MeanRates computes from the last four steps.
 #include "simulation/published_motion.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace flexarm::test {
 namespace {
 
-/// Mean rates of a place over steps that end at t = 0.
+/// Mean rates of a position over steps that end at t = 0.
 template <class Place>
 MeanRates rates_of(const Place& place, const std::array<double, 4>& length) {
   MeanRates rates;
@@ -37,7 +37,7 @@ TEST(MeanRates, AreOfSecondOrder) {
   EXPECT_NEAR(std::log2(error(0.02) / error(0.01)), 2, 0.1);
 }
 
-// Where steps do not resolve a mode, its place alternates.
+// A mode that the steps do not resolve makes the position alternate from step to step.
 TEST(MeanRates, DoNotRing) {
   constexpr double h = 0.01;
   const auto place = [](double t, int k) { return Vector3(kA * t * t / 2 + (k % 2 ? 1e-3 : -1e-3) * kB); };

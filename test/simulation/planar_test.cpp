@@ -1,4 +1,5 @@
-// Scenes that move in a plane are found, solved there, and come to the same as in three dimensions.
+// Tests that scenes with motion in a plane are detected and solved in the plane, with the same results as in three
+// dimensions.
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -20,7 +21,7 @@ namespace {
 
 using scene::JointKind;
 
-/// Round-off of some hundred steps of a mechanism that magnifies it, relative to its size.
+/// Tolerance: round-off of some hundred steps, amplified by the mechanism, relative to its size.
 constexpr double kSame = 1e-11;
 
 const std::vector<std::string> kPlanarSchemes = {"em", "em0", "em_symmetric", "em4", "edmc1", "edmc2"};
@@ -32,8 +33,8 @@ PlaneSearch plane_of(const scene::SceneDescription& scene, const std::string& sc
   return find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
 }
 
-/// A cart on a rail that carries a flexible arm with a rigid body at its end, and another arm, in a plane that is
-/// tilted: with damping, dry and smooth friction, a spring, loads of both kinds. Its normal is turn * z.
+/// A cart on a rail carries a flexible arm with a rigid body at its end, and another arm. They move in a tilted plane
+/// with the normal turn * z, with damping, dry and smooth friction, a spring, and loads of both kinds.
 SceneBuilder tilted_arm(const Quaternion& turn) {
   SceneBuilder b;
   b.scene.integrator.step = 0.005;
@@ -57,13 +58,13 @@ SceneBuilder tilted_arm(const Quaternion& turn) {
 
 const Quaternion kTilt = so3::exp_quaternion(Vector3(0.4, -0.7, 0.3));
 
-/// The same for three dimensions.
+/// The same scene, solved in three dimensions.
 scene::SceneDescription in_space(scene::SceneDescription scene) {
   scene.integrator.may_be_planar = false;
   return scene;
 }
 
-/// Largest distance of nodes and difference of their velocities' ways in a step, relative to the mechanism's size.
+/// Largest difference of positions, and of velocities times the step, of all nodes, relative to the mechanism's size.
 double distance(const Simulation& a, const Simulation& b) {
   double largest = 0;
   const double length = model_of(a).length_scale, h = a.step_size();
@@ -76,7 +77,7 @@ double distance(const Simulation& a, const Simulation& b) {
   return largest;
 }
 
-/// Both, side by side; `act(simulation, step)` before each step.
+/// Compares a run in the plane with a run in three dimensions. `act(simulation, step)` is called before each step.
 void expect_same_motion(const scene::SceneDescription& scene, const std::string& scheme, int steps,
                         const std::function<void(Simulation&, int)>& act = {}) {
   SimulationOptions options;
@@ -104,10 +105,10 @@ TEST(Planar, IsFoundInAnyPlane) {
     EXPECT_NEAR(std::abs(search.plane->normal.dot(turn * Vector3::UnitZ())), 1, 1e-12);
   }
   scene::SceneDescription scene = in_space(tilted_arm(kTilt).scene);
-  EXPECT_EQ(plane_of(scene).reason, "three dimensions are asked for");
+  EXPECT_EQ(plane_of(scene).reason, "three dimensions are requested");
   for (const char* scheme : {"m1", "std", "beta2", "newmark", "hht2"})
     EXPECT_EQ(plane_of(tilted_arm(kTilt).scene, scheme).reason,
-              std::string("scheme '") + scheme + "' is three-dimensional");
+              std::string("scheme '") + scheme + "' computes in three dimensions only");
 }
 
 TEST(Planar, IsTheSameMotionAsInThreeDimensions) {
@@ -127,7 +128,7 @@ TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
   }
 }
 
-// A body that flies freely has coordinates out of the plane, which stay as they are.
+// A free body has coordinates out of the plane, which keep their values.
 TEST(Planar, TakesFreeAndBallJoints) {
   SceneBuilder b;
   b.scene.integrator.step = 0.01;
@@ -140,7 +141,8 @@ TEST(Planar, TakesFreeAndBallJoints) {
   for (const std::string& scheme : kPlanarSchemes) expect_same_motion(b.scene, scheme, 80);
 }
 
-// It is part of the state, and of checkpoints.
+// Components of the strain memory that the scheme does not use stay exactly zero: they are part of the state and of
+// checkpoints.
 TEST(Planar, WhatNoDamperKeepsStaysZero) {
   for (const bool is_damped : {false, true}) {
     SceneBuilder b;
@@ -191,7 +193,8 @@ TEST(Planar, IsNotFoundWhereSomethingIsNearlyInThePlane) {
             "no principal axis of a link's inertia is normal to the plane");
 }
 
-// A section that couples bending in the plane with what is out of it has no plane; one that couples within has.
+// A section that couples bending in the plane with deformation out of it prevents planar steps. Coupling within the
+// plane does not.
 TEST(Planar, IsNotFoundWhereSectionsCoupleOutOfIt) {
   const auto search = [](int row, int column) {
     SceneBuilder b;
@@ -210,7 +213,7 @@ TEST(Planar, IsNotFoundWhereSectionsCoupleOutOfIt) {
   EXPECT_FALSE(search(1, 2).plane) << "both shears";
 }
 
-// The motion begins in three dimensions, and stays there.
+// The initial motion leaves the plane, so the run is solved in three dimensions throughout.
 TEST(Planar, IsNotTakenWhereTheStartMovesOutOfIt) {
   SceneBuilder b;
   b.scene.integrator.step = 0.01;
@@ -226,7 +229,8 @@ TEST(Planar, IsNotTakenWhereTheStartMovesOutOfIt) {
   EXPECT_NEAR(plane.tip_pose(1).position.z(), 1e-6, 1e-11) << "a second at 1e-6 m/s";
 }
 
-// What acts out of the plane lifts the motion to three dimensions, where it is what it would have been there.
+// A force out of the plane switches to three dimensions. The motion is the same as if it had been solved there from the
+// start.
 TEST(Planar, IsLiftedByWrenches) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
   for (const char* scheme : {"em", "edmc2"})
@@ -253,7 +257,7 @@ TEST(Planar, StaysInThePlaneUnderWrenchesThere) {
   }
 }
 
-// Which space a step is taken in follows from the state alone.
+// Only the state decides whether a step is solved in the plane or in three dimensions.
 class PlanarSnapshots : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PlanarSnapshots, GoOnFromAny) {
@@ -328,7 +332,7 @@ TEST(Planar, GoesOnFromOtherJointStates) {
     });
 }
 
-// A ball joint may be turned out of the plane.
+// A joint state may turn a ball joint out of the plane.
 TEST(Planar, IsLiftedByJointStates) {
   SceneBuilder b = tilted_arm(Quaternion::Identity());
   b.body("ball", 0.2, {0.1, 0, 0}, 1e-3 * Matrix3::Identity());

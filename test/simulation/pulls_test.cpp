@@ -1,4 +1,4 @@
-// Springs that pull on points of links: what they do, and what displays are told of forces.
+// Tests pulls, i.e. springs and dampers from outside on points of links, and the forces that are offered to displays.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,7 +42,7 @@ class Pulls : public ::testing::TestWithParam<std::string> {
   }
 };
 
-// Without a damper, what they have done is what the spring has lost.
+// Without a damper, the work of the pull equals the energy that the spring loses.
 TEST_P(Pulls, DoTheWorkThatTheSpringLoses) {
   Simulation simulation = simulated(body_with_beam());
   simulation.apply_wrenches({pull_on(simulation, "body", 0)});
@@ -57,22 +57,24 @@ TEST_P(Pulls, DoTheWorkThatTheSpringLoses) {
     moved = std::max(moved, start - potential());
   }
   EXPECT_GT(moved, 0.3 * start);
-  // The mean force times the way of the point is exactly that, in any scheme: round-off of 200 steps.
+  // The work is the mean force times the displacement of the point. This is exact in any scheme, up to the round-off of
+  // 200 steps.
   EXPECT_NEAR(simulation.energies().work, start - potential(), 1e-10 * start);
 }
 
-// A damper brings everything to rest with the point at the target, if it can be there.
+// With a damper, the motion ends with the point at the target, if the mechanism allows it.
 TEST_P(Pulls, ComeToRestAtTheTarget) {
   Simulation simulation = simulated(slider());
   simulation.apply_wrenches({pull_on(simulation, "mass", kDamping)});
-  // It decays with c/2m = 0.75/s: in 30 s to 2e-10.
+  // The motion decays with c/2m = 0.75/s: after 30 s, to 2e-10.
   for (int n = 0; n < 3000; ++n) ASSERT_TRUE(simulation.step().converged);
   EXPECT_NEAR(simulation.position(0), kTarget.y() - kPoint.y(), 1e-8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, Pulls, ::testing::Values("em", "em0", "std", "edmc2", "m1", "newmark"));
 
-// The mean of both ends: the oscillation of the midpoint rule, whose angle per step is 2 atan(omega h / 2).
+// The force is the mean of both ends of the step. So the oscillation is that of the midpoint rule, with 2 atan(omega h
+// / 2) per step.
 TEST(Pull, OscillatesAsTheMidpointRuleSays) {
   Simulation simulation(slider().scene);
   simulation.apply_wrenches({pull_on(simulation, "mass", 0)});
@@ -80,12 +82,12 @@ TEST(Pull, OscillatesAsTheMidpointRuleSays) {
   for (int n = 1; n <= 500; ++n) {
     const StepResult result = simulation.step();
     ASSERT_TRUE(result.converged);
-    ASSERT_LE(result.iterations, 2);  // it is linear
+    ASSERT_LE(result.iterations, 2);  // the problem is linear
     ASSERT_NEAR(simulation.position(0), way * (1 - std::cos(n * angle)), 1e-10);
   }
 }
 
-// Sub-steps backwards have the damper, too: y'' = -2 d y' - w^2 (y - way) to the fourth order.
+// The damper acts in backward sub-steps, too: the motion y'' = -2 d y' - w^2 (y - way) is of fourth order.
 TEST(Pull, WithADamperIsOfTheOrderOfCompositions) {
   const double way = kTarget.y() - kPoint.y(), d = 0.5 * kDamping / kMass, w = std::sqrt(kStiffness / kMass - d * d);
   const auto error = [&](double step) {
@@ -101,7 +103,7 @@ TEST(Pull, WithADamperIsOfTheOrderOfCompositions) {
   EXPECT_NEAR(std::log2(error(0.1) / error(0.05)), 4, 0.3);
 }
 
-// The tangent is exact: Newton's method converges as fast as without.
+// The tangent of the pull is exact, so Newton's method converges as fast as without the pull.
 TEST(Pull, CostsNoIterations) {
   SimulationOptions options;
   options.reuse_factorisation = false;
@@ -116,7 +118,7 @@ TEST(Pull, CostsNoIterations) {
   }
 }
 
-// Far stiffer and more damped than an explicit force could be: the mass follows in a step.
+// An explicit force of this stiffness and damping would be unstable. Here the mass follows within one step.
 TEST(Pull, IsStableHoweverStiff) {
   Simulation simulation(slider().scene);
   AppliedWrench pull = pull_on(simulation, "mass", 1e9);
@@ -169,7 +171,7 @@ TEST(Pull, ThatCannotActIsRefused) {
   EXPECT_TRUE(state_of(simulation).wrenches.empty());
 }
 
-// ---------------------------------------------------------------- for displays
+// ---------------------------------------------------------------- wrenches that displays show
 
 TEST(ShownWrenches, OutsideOnesAreThoseOfSceneAndUser) {
   SceneBuilder b = slider();
@@ -241,7 +243,7 @@ TEST(Shown, MassAndFixedLinks) {
   EXPECT_FALSE(simulation.is_fixed_to_world(index_of(simulation, "body")));
 }
 
-// As the beam lies in its link's frame before anything has bent it, wherever the link starts.
+// The sections are those of the undeformed beam in its link's frame, wherever the link starts.
 TEST(Shown, UndeformedSections) {
   SceneBuilder b = body_with_beam();
   b.scene.initial_joints.push_back({"ball/rz", 0.7, 0, {}});

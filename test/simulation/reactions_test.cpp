@@ -1,4 +1,5 @@
-// What joints transmit: it balances loads and the rates of momenta of what hangs on them.
+// Tests the forces that joints transmit: they balance the loads and the rates of momenta of the links outboard of the
+// joint.
 #include <gtest/gtest.h>
 
 #include "support/scene_builder.h"
@@ -14,7 +15,7 @@ std::size_t link_index(const Simulation& simulation, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// A flexible arm on a hinge away from the world's origin, with a body at its end that a constant force pulls.
+/// A flexible arm on a hinge away from the world's origin. A constant force pulls a body at its end.
 SceneBuilder pulled_arm() {
   SceneBuilder b;
   b.beam("arm", {{0.6, 0, 0}, {0.9, 0.2, 0.1}}, section(2e4, 1e4, 200, 250, 0.5, 0.02, 0.01), 3, 2);
@@ -30,7 +31,7 @@ SceneBuilder pulled_arm() {
   return b;
 }
 
-/// As theory.md has it, from means over the last three steps.
+/// The value at the end of the last step, extrapolated from means over the last three steps (theory.md).
 Vector3 at_end(const std::vector<Vector3>& means) {
   const std::size_t n = means.size();
   return means[n - 1] + 0.5 * (means[n - 2] - means[n - 3]);
@@ -38,7 +39,8 @@ Vector3 at_end(const std::vector<Vector3>& means) {
 
 class Reactions : public ::testing::TestWithParam<std::string> {};
 
-// Exact with these schemes, by the tolerance of Newton's method and the round-off of momenta over a step.
+// In these schemes the balance is exact, up to the tolerance of Newton's method and the round-off of momenta over a
+// step.
 TEST_P(Reactions, OfTheRootBalanceLoadsAndRatesOfMomenta) {
   SceneBuilder b = pulled_arm();
   b.scene.integrator.scheme = GetParam();
@@ -67,7 +69,8 @@ TEST_P(Reactions, OfTheRootBalanceLoadsAndRatesOfMomenta) {
 }
 INSTANTIATE_TEST_SUITE_P(Schemes, Reactions, ::testing::Values("em", "em0", "edmc2", "m1", "em_symmetric"));
 
-// Forces at the ends of steps: momenta change by their means, moments but to second order.
+// The Newmark family has forces at the ends of steps. Their means give the change of momentum exactly; moments are
+// exact only to second order.
 TEST(Reactions, OfNewmarkBalanceRatesOfMomentum) {
   SceneBuilder b = pulled_arm();
   b.scene.integrator.scheme = "newmark";
@@ -80,15 +83,15 @@ TEST(Reactions, OfNewmarkBalanceRatesOfMomentum) {
     ASSERT_TRUE(simulation.step().converged);
     forces.push_back((simulation.momentum() - momentum) / kStep - kForce);
     momentum = simulation.momentum();
-    if (n < 5) continue;  // there is no force before the start
+    if (n < 5) continue;  // before the start there are no forces
     scale = std::max(scale, forces.back().norm());
     error = std::max(error, (simulation.reaction(arm).force - at_end(forces)).norm());
   }
   EXPECT_LE(error, 1e-10 * scale);
 }
 
-// The torque about a driven axis is the drive's effort: both do the same work, one over the angle u of a step, the
-// other over 2 tan(u/2), which is more by a part u^2/12.
+// The moment about a driven axis equals the drive's effort. Both do the same work over a step, in which the joint turns
+// by u. The effort does it over u, the moment over 2 tan(u/2), which is larger by u^2/12.
 TEST(Reactions, ContainTheDrive) {
   SceneBuilder b = pulled_arm();
   b.scene.initial_joints.clear();
@@ -102,7 +105,7 @@ TEST(Reactions, ContainTheDrive) {
   EXPECT_NEAR(simulation.reaction(arm).moment.dot(Vector3(0, 0.6, 0.8)), effort, turn * turn / 12 * std::abs(effort));
 }
 
-// A link that is fixed to another one is part of its rigid body, unless somebody wants to know what holds it.
+// A fixed link is merged into the body of the other link, unless a sensor needs the reaction between them.
 TEST(Reactions, HoldAFixedPayload) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -10};
@@ -119,11 +122,11 @@ TEST(Reactions, HoldAFixedPayload) {
   Simulation simulation(b.scene);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   const Wrench grip_wrench = simulation.reaction(link_index(simulation, "payload"));
-  // The payload's axes: x along the world's y. Its mass hangs at (-0.3, 0.1) from the grip.
+  // The payload's x axis is the world's y axis. Its mass hangs at (-0.3, 0.1) from the grip.
   EXPECT_LE((grip_wrench.force - Vector3(0, 0, 25)).norm(), 1e-12);
   EXPECT_LE((grip_wrench.moment - Vector3(-0.3, 0.1, 0).cross(Vector3(0, 0, 20))).norm(), 1e-12);
   const SensorSample& cell = simulation.sample(1);
-  // About a place 0.1 m further in the link's x, in the link's axes.
+  // Moment about a point 0.1 m further along the link's x axis, in the link's axes.
   const Vector3 moment = Vector3(0.1, 0.3, 0).cross(Vector3(0, 0, 20)) - Vector3(0.1, 0, 0).cross(Vector3(0, 0, 25));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(cell.values[3 + k], moment[k], 1e-12);
   EXPECT_NEAR(cell.values[2], 25, 1e-12);
@@ -136,7 +139,7 @@ TEST(Reactions, AreThereForLinksOfWhichSomebodyAsks) {
   EXPECT_EQ(simulation.reaction(link_index(simulation, "arm")).force, Vector3(0, 0, 0));
 }
 
-// A step of a cantilever: the clamp carries what the first section does.
+// A cantilever after one step: the clamp carries the resultant of the first section.
 TEST(Reactions, AgreeWithTheSectionForceAtRest) {
   SceneBuilder b;
   b.beam("arm", {{1, 0, 0}}, section(2e4, 1e4, 200, 250, 0.5, 0.02, 0.01), 4, 2);
@@ -148,7 +151,7 @@ TEST(Reactions, AgreeWithTheSectionForceAtRest) {
   ASSERT_TRUE(simulation.solve_static(1).converged);
   const Wrench reaction = simulation.reaction(1);
   EXPECT_LE((reaction.force - Vector3(0, -1e-4, -2e-4)).norm(), 2e4 * 1e-15);  // stiffness times round-off of strains
-  // What the section before does to the one behind is minus the resultant.
+  // The force of the part before the section on the part behind it is minus the resultant.
   const BeamPoint section = simulation.section(1, 0);
   EXPECT_LE((reaction.moment + section.resultant.tail<3>()).norm(), 1e-6 * reaction.moment.norm());
 }

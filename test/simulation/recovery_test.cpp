@@ -1,4 +1,4 @@
-// Steps that are saved: counted, done by another scheme where that is allowed, bounded by the clock on the wall.
+// Tests recovery of steps: they are counted, done by another scheme if that is allowed, and limited in wall-clock time.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 using scene::JointKind;
 using Reason = StepResult::Reason;
 
-/// A stiff cantilever under a step of force, in steps of some periods of its lowest mode, 1.8 s.
+/// A stiff cantilever under a step force, with steps of several periods of its lowest mode, 1.8 s.
 scene::SceneDescription stiff_cantilever(double force, double step) {
   SceneBuilder b;
   b.beam("arm", {{1, 0, 0}}, section(1e5, 3.5e4, 0.8, 1, 1, 2e-5, 1e-5), 8, 2);
@@ -30,7 +30,7 @@ scene::SceneDescription stiff_cantilever(double force, double step) {
 struct Outcome {
   StepCounts counts;
   bool converged = true;
-  double defect = 0;  // largest, of the energy account [J]
+  double defect = 0;  // largest change of total energy - work + dissipation [J]
 };
 
 Outcome run(Simulation& simulation, int steps) {
@@ -61,8 +61,8 @@ TEST(Recovery, EdmcDoesWhatTheSchemeCannotWhereThatIsAllowed) {
       Simulation dissipates(scene);
       const Outcome saved = run(dissipates, 60);
       EXPECT_TRUE(state_of(dissipates).strain_memory.empty()) << "em has none";
-      // Round-off of strains, 1e-16 over an element's length, times axial forces, EA times strains of 1e-2, and some
-      // hundred steps; beside energies of 0.1 J.
+      // Round-off: that of strains is 1e-16 over an element's length; it is multiplied by axial forces, EA times
+      // strains of 1e-2, over some hundred steps. Energies are 0.1 J.
       EXPECT_LT(saved.defect, 1e-9) << step << ' ' << max_iterations;
       if (!saved.converged) continue;
       ++saved_runs;
@@ -113,7 +113,7 @@ TEST(Recovery, AccountAndMomentaAreExactOverTheChangeOfSchemes) {
         }
         ASSERT_TRUE(result.converged) << name;
       }
-      // Round-off of 90 steps.
+      // Bound: round-off of 90 steps.
       EXPECT_NEAR(account(), energy, 1e-11 * energy) << name << ' ' << damping;
       const Momenta end = momenta(model, scheme, state);
       EXPECT_LT((end.linear - start.linear).norm(), 1e-11 * start.linear.norm()) << name;
@@ -144,7 +144,7 @@ TEST(Recovery, IsRefusedWhereStatesDoNotFit) {
   }
 }
 
-/// Turns too far in a step until its damper has slowed it down.
+/// A rotor that turns too far in a step until its damper has slowed it down.
 scene::SceneDescription fast_rotor() {
   SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
@@ -158,7 +158,8 @@ TEST(Recovery, HalvingsAreCountedAndNamed) {
   Simulation simulation(fast_rotor());
   const StepResult result = simulation.step();
   ASSERT_TRUE(result.converged);
-  // 4.5 rad in a step, of which a sub-step may make 2 (tangent-scaled): thrice halved, or twice if damped by then.
+  // The rotor turns by 4.5 rad in a step, and a sub-step may turn by 2 (tangent-scaled). So the step is halved three
+  // times, or twice if the damper has slowed the rotor down by then.
   EXPECT_GE(result.deepest_halving, 2);
   EXPECT_LE(result.deepest_halving, 3);
   StepCounts counts;
@@ -167,11 +168,12 @@ TEST(Recovery, HalvingsAreCountedAndNamed) {
                                          std::to_string(1 << result.deepest_halving) + " of a step)");
   EXPECT_EQ(recoveries_text(StepCounts()), "");
   counts = {};
-  counts.deepest_halving = 40;  // as at a stop
+  counts.deepest_halving = 40;  // as deep as at a stop
   EXPECT_EQ(recoveries_text(counts), "0 halvings (down to 1/1099511627776 of a step)");
 }
 
-// Laws of friction that turn round within a step's motion make Newton's updates jump to and fro; damped ones arrive.
+// A friction law that changes steeply within a step's motion makes Newton's updates jump back and forth. Damped updates
+// converge.
 TEST(Recovery, NoStepIsHalvedForSteepFriction) {
   for (const char* scheme : {"em", "em0", "em_symmetric", "m1", "std"}) {
     SimulationOptions options;
@@ -213,7 +215,7 @@ TEST(Recovery, TheSubstituteHasWhatIsLeftOfTheTime) {
 
 TEST(Recovery, EndsByTheClockOnTheWallAndGoesOn) {
   SimulationOptions options;
-  options.recovery_wall_time = 1e-9;  // passed whenever it is looked at
+  options.recovery_wall_time = 1e-9;  // has always passed when it is checked
   Simulation simulation(fast_rotor(), options);
   int given_up = 0;
   double last = 0;
@@ -221,7 +223,7 @@ TEST(Recovery, EndsByTheClockOnTheWallAndGoesOn) {
     const StepResult result = simulation.step();
     if (!result.converged) {
       ASSERT_EQ(result.reason, Reason::OutOfTime);
-      EXPECT_NE(simulation.explain(result).find("clock on the wall"), std::string::npos);
+      EXPECT_NE(simulation.explain(result).find("limit of wall time"), std::string::npos);
       ASSERT_LT(++given_up, 100);
     }
     EXPECT_GE(simulation.time(), last);

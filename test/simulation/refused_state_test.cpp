@@ -1,4 +1,4 @@
-// States and checkpoints that are refused, with the reason: of another scene, damaged, impossible.
+// Tests that states and checkpoints of another scene, damaged ones and impossible ones are refused with the reason.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -17,7 +17,7 @@
 namespace flexarm::test {
 namespace {
 
-/// A changed scene, and a word of the message that says what differs.
+/// A change of the scene, and a text that the error message must contain.
 struct Change {
   const char* name;
   std::string told;
@@ -51,7 +51,7 @@ scene::DirectSection& section_of(scene::SceneDescription& scene) {
   return std::get<scene::DirectSection>(scene.links[1].beam->section);
 }
 
-const double kAUnit = 1 + std::numeric_limits<double>::epsilon();  // the least change of a number
+const double kAUnit = 1 + std::numeric_limits<double>::epsilon();  // the smallest relative change of a number
 
 void change_cam(scene::SceneDescription& scene) {
   for (scene::JointDescription& joint : scene.joints)
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"alpha", "alpha: expected '-0.1', found '-0.05'", [](auto& scene) { scene.integrator.alpha = -0.1; }}),
     [](const auto& info) { return info.param.name; });
 
-// What changes no motion, and what only limits Newton's method, may differ.
+// A checkpoint may be read with other probes, and with other limits of Newton's method: they do not change the motion.
 TEST(CheckpointOfAChangedScene, IsReadWithOtherProbesAndLimits) {
   const std::string path = ::testing::TempDir() + "flexarm_other_limits_test.state";
   SceneBuilder b = everything_scene();
@@ -113,7 +113,7 @@ TEST(CheckpointOfAChangedScene, IsReadWithOtherProbesAndLimits) {
   std::remove(path.c_str());
 }
 
-// A state that is changed in one place is told from one that the simulator could have come to.
+// Each change makes a state that the simulator could not have reached; it is detected.
 TEST(RestoredState, WithImpossibleValuesIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   SimulationOptions options;
@@ -177,14 +177,15 @@ class DamagedCheckpoint : public ::testing::Test {
   }
   void TearDown() override { std::remove(path_.c_str()); }
 
-  /// The text with the checksum that belongs to it.
+  /// Appends the checksum that belongs to the text.
   static std::string sealed(const std::string& text) {
     Fingerprint fingerprint;
     fingerprint.add(text);
     return text + "checksum " + fingerprint.text() + "\n";
   }
 
-  /// Reading `text` fails with an error that names the file and says `told`; the simulation is as before.
+  /// Expects that reading `text` fails with an error that names the file and contains `told`, and leaves the simulation
+  /// unchanged.
   void expect_refused(const std::string& text, const std::string& what, const std::string& told = "") {
     std::ofstream(path_, std::ios::binary) << text;
     const State before = state_of(*simulation_);
@@ -219,7 +220,7 @@ TEST_F(DamagedCheckpoint, AnyFlippedBitIsRefused) {
   }
 }
 
-// Files with a checksum that fits and content that does not.
+// Files whose checksum is right, but whose content is wrong.
 TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
   const std::size_t counts = text_.find("\nsteps ") + 1, numbers = text_.find('\n', counts) + 1;
   const std::size_t second = text_.find('\n', numbers) + 1, end = text_.rfind("checksum ");
@@ -252,7 +253,7 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
                  "expected '" + text_.substr(0, first_line) + "'");
 }
 
-// What was kept before has no values of its scene.
+// Checkpoints of an older format do not contain the values of their scene.
 TEST_F(DamagedCheckpoint, StatesWithoutValuesAreRead) {
   const std::size_t first_line = text_.find('\n'), values = text_.find("\nvalues ") + 1;
   const std::string old = "flexarm-checkpoint 13" + text_.substr(first_line, values - first_line);
@@ -263,7 +264,7 @@ TEST_F(DamagedCheckpoint, StatesWithoutValuesAreRead) {
   expect_refused(sealed(other), "another scene", "': it belongs to another scene, scheme or step");
 }
 
-// What was kept before does not say on which links wrenches act.
+// Checkpoints of an older format do not say on which links wrenches act.
 TEST_F(DamagedCheckpoint, LinksOfWrenches) {
   AppliedWrench wrench;
   wrench.link = 1;
@@ -285,10 +286,11 @@ TEST_F(DamagedCheckpoint, LinksOfWrenches) {
   EXPECT_EQ(state_of(*simulation_).wrenches[0].force, wrench.wrench.force);
 }
 
-// Finite numbers, of which each alone could be.
+// Each number is finite and possible by itself, but the energies overflow.
 TEST_F(DamagedCheckpoint, EnergiesThatAreNotFiniteAreRefused) {
   const std::size_t counts = text_.find("\nsteps ") + 1, end = text_.rfind("checksum ");
-  std::size_t velocity = text_.find('\n', counts) + 1;  // behind the time, origin, first node's pose
+  // The line of the first node's velocity, after time, origin and pose
+  std::size_t velocity = text_.find('\n', counts) + 1;
   for (int line = 0; line < 1 + 3 + 3 + 4; ++line) velocity = text_.find('\n', velocity) + 1;
   const std::size_t next = text_.find('\n', velocity);
   expect_refused(sealed(text_.substr(0, velocity) + "1p+600" + text_.substr(next, end - next)), "fast node",

@@ -1,5 +1,5 @@
 #pragma once
-/// Comparison of states bit for bit.
+/// Compares states bit for bit.
 
 #include <cstring>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace flexarm::test {
 
-/// All numbers of a state, to be compared bit for bit.
+/// All numbers of a state.
 inline std::vector<double> numbers(const State& state) {
   std::vector<double> out{state.time,
                           state.work,

@@ -1,4 +1,4 @@
-// Derivatives of runs, against differences of whole runs.
+// Tests derivatives of runs with respect to parameters and start, against differences of whole runs.
 #include "flexarm/simulation/sensitivities.h"
 
 #include <algorithm>
@@ -21,7 +21,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Positions, and what follows from velocities smoothly: those that are put out are chosen from several guesses.
+/// Positions and momenta, which depend smoothly on the state. Published velocities do not: they are chosen from several
+/// estimates.
 VectorXd observed(const Simulation& simulation) {
   std::vector<double> values;
   for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) values.push_back(simulation.position(i));
@@ -40,7 +41,7 @@ VectorXd after(const Start& start, double value, int steps) {
   return observed(simulation);
 }
 
-/// Central differences of whole runs, extrapolated to zero: an error of way^4, and round-off over way.
+/// Central differences of whole runs, extrapolated to zero step: the error is of order way^4, plus round-off over way.
 template <class Start>
 VectorXd difference_of_runs(const Start& start, double value, double way, int steps) {
   const auto quotient = [&](double h) -> VectorXd {
@@ -53,7 +54,8 @@ double deviation(const VectorXd& a, const VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-/// Of parameters with these values, after `steps`.
+/// Compares the derivatives after `steps` with differences, for parameters with the given values. `way`: relative step
+/// of the differences.
 void expect_differences(const Scene& scene, const std::vector<std::pair<std::string, double>>& parameters, int steps,
                         double way = 1e-3) {
   Simulation simulation = scene.simulation();
@@ -74,7 +76,7 @@ void expect_differences(const Scene& scene, const std::vector<std::pair<std::str
 
 // ---------------------------------------------------------------- scenes
 
-// A rigid leg slides on a flexible rail that is bent.
+// A rigid leg that slides on a bent flexible rail.
 const std::string kSlider = R"(<robot name="slider"> <link name="world"/>
   <joint name="mount" type="fixed"> <parent link="world"/> <child link="rail"/> </joint>
   <link name="rail"> <beam elements="3"> <centerline> <line to="1 0 0"/> <arc to="2 0 -0.4" center="1 0 -1.45"/>
@@ -103,7 +105,7 @@ const std::string kLoop = R"(<robot name="loop"> <parameter name="mass" value="0
   <simulation> <initial joint="crank" velocity="2"/> <probe name="middle" link="coupler" at="0.3 0 0.1"/> </simulation>
   )";
 
-// A rod with a hand that a constant motion holds.
+// A rod with a hand whose joint is held by a constant motion.
 const std::string kBentRod = R"(<robot name="bent_rod">
   <parameter name="bend" value="0.6"/> <parameter name="payload" value="0.5"/> <link name="world"/>
   <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
@@ -136,13 +138,13 @@ TEST(Sensitivities, FlexibleArm) {
     SCOPED_TRACE(scheme);
     const Scene scene{with_scheme(flexible_arm("0 0 1"), scheme, 2e-3)};
     expect_differences(scene, {{"payload", 0.4}, {"damping", 0.3}, {"length", 1}}, 300, 2e-3);
-    // Of the runs' round-off, to which the Newmark family adds that of the first accelerations, little is left only a
-    // longer way apart.
+    // A larger step of the differences, because of the round-off of runs. In the Newmark family, the accelerations at
+    // the start add to it.
     expect_differences(scene, {{"young", 7e9}}, 300, 4e-3);
   }
 }
 
-// Five sub-steps each, some of them backwards.
+// Each step consists of five sub-steps, some of them backwards.
 TEST(Sensitivities, ComposedSteps) {
   expect_differences({with_scheme(flexible_arm("0 1 0"), "em4", 5e-3)}, {{"payload", 0.4}, {"damping", 0.3}}, 40, 2e-3);
 }
@@ -181,7 +183,7 @@ TEST(Sensitivities, ParameterAtTheEndOfItsRange) {
   EXPECT_LT(deviation(one_sided.of(observed), central.of(observed)), 1e-6);
 }
 
-/// What round-off makes of a run: by how much it changes if every iteration has new factors.
+/// Round-off of a run: the difference to the same run with new factors in every iteration.
 double round_off(const Scene& scene, int steps) {
   SimulationOptions always_new;
   always_new.reuse_factorisation = false;
@@ -191,8 +193,8 @@ double round_off(const Scene& scene, int steps) {
   return (run({}) - run(always_new)).cwiseAbs().maxCoeff();
 }
 
-/// Of joints' positions and rates at the start, with which whole runs start elsewhere, too. `round_off`: of the runs,
-/// where it is as large as all else when it is divided by the 1e-5 that neighbours are apart from the run.
+/// Compares the derivatives with respect to the joint positions and rates at the start with differences. `round_off` of
+/// the runs enters the tolerance divided by 1e-5, the distance of the neighbouring runs that the sensitivities use.
 void expect_transition(const Scene& scene, int steps, double way, double round_off = 0) {
   Simulation simulation = scene.simulation();
   const MechanismStates states(model_of(simulation), motion_of(simulation));
@@ -209,7 +211,7 @@ void expect_transition(const Scene& scene, int steps, double way, double round_o
   int count = 0;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const bool is_rotor = names[k].find("rotor:") != std::string::npos;
-    if (names[k].find(':') != std::string::npos && !is_rotor) continue;  // of a node
+    if (names[k].find(':') != std::string::npos && !is_rotor) continue;  // a state of a node, not of a joint
     const auto start_off = [&](double off) {
       Simulation other = scene.simulation();
       const MechanismMotion motion = states.moved(static_cast<int>(k), off);
@@ -227,7 +229,8 @@ void expect_transition(const Scene& scene, int steps, double way, double round_o
 TEST(Sensitivities, TransitionOfPendulumArmSliderAndLoop) {
   expect_transition({with_scheme(kPendulum, "em", 5e-3)}, 200, 1e-3);
   expect_transition({with_scheme(flexible_arm("0 0 1"), "em", 2e-3)}, 100, 1e-3);
-  const Scene slider{with_scheme(kSlider, "em", 2e-3)};  // 7e-12 of its momentum, of which one change shows a part
+  // The round-off of the slider's momentum is 7e-12. round_off() measures only a part of it, by one change of factors.
+  const Scene slider{with_scheme(kSlider, "em", 2e-3)};
   expect_transition(slider, 100, 5e-3, 3 * round_off(slider, 100));
   expect_transition({with_scheme(kLoop, "em", 2e-3)}, 200, 1e-3);
 }
@@ -237,7 +240,8 @@ TEST(Sensitivities, TransitionOfARotorBehindAnElasticGear) {
     expect_transition({with_scheme(kGearedPendulum, scheme, 5e-3)}, 200, 1e-2);
 }
 
-// A joint that starts elsewhere is a state of the start.
+// A parameter that sets the start position of a joint has the same derivatives as this position as a state of the
+// start.
 TEST(Sensitivities, StatesOfTheStartAreWhatInitialSays) {
   const Scene scene{with_scheme(flexible_arm("0 0 1"), "em", 2e-3)};
   Simulation simulation = scene.simulation();
@@ -251,7 +255,7 @@ TEST(Sensitivities, StatesOfTheStartAreWhatInitialSays) {
   EXPECT_LT(deviation(found.col(0), found.col(wrist)), 1e-6);
 }
 
-// Small motions take the midpoint rule's steps.
+// For small motions, a step is a step of the midpoint rule with the linear model.
 TEST(Sensitivities, FirstStepFromRestIsThatOfTheLinearModel) {
   const Scene scene{with_scheme(R"(<robot name="rod"> <link name="world"/>
     <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
@@ -279,7 +283,7 @@ TEST(Sensitivities, FirstStepFromRestIsThatOfTheLinearModel) {
           << rates << by_rates;
 }
 
-// ---------------------------------------------------------------- beside the run
+// ---------------------------------------------------------------- derivatives that are computed along with the run
 
 std::vector<double> numbers_of(const State& state) {
   std::vector<double> numbers;
@@ -289,7 +293,7 @@ std::vector<double> numbers_of(const State& state) {
 
 TEST(Sensitivities, RunKeepsItsBits) {
   for (const std::string scheme : {"em", "em4", "hht2"}) {
-    const Scene scene{with_scheme(flexible_arm("0 1 0"), scheme, 2e-3)};  // it moves in a plane
+    const Scene scene{with_scheme(flexible_arm("0 1 0"), scheme, 2e-3)};  // the arm moves in a plane
     Simulation alone = scene.simulation(), accompanied = scene.simulation();
     SensitivityRequest request = scene.request({"young", "payload"});
     request.initial_state = true;
@@ -303,7 +307,7 @@ TEST(Sensitivities, RunKeepsItsBits) {
   }
 }
 
-// Runs that are h apart drift apart as their phases do; neighbours do not.
+// Differences of two runs lose accuracy as their phases drift apart. The derivatives beside the run do not.
 TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   const std::string scene = R"(<robot name="oscillator"> <parameter name="stiffness" value="400"/> <link name="world"/>
     <joint name="slide" type="prismatic"> <parent link="world"/> <child link="mass"/> <axis xyz="1 0 0"/>
@@ -318,7 +322,7 @@ TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   Simulation simulation = whole.simulation();
   Sensitivities sensitivities(simulation, whole.request({"stiffness"}));
   for (int i = 0; i < steps; ++i) ASSERT_TRUE(sensitivities.step().converged);
-  // The midpoint rule turns by 2 atan(rate step / 2) in a step.
+  // The midpoint rule turns the phase by 2 atan(rate step / 2) in a step.
   const double half = 0.5 * rate * step, phase = 2 * steps * std::atan(half);
   const double by_rate = -0.5 * std::sin(phase) * steps * step / (1 + half * half);
   EXPECT_NEAR(sensitivities.positions()(0, 0), by_rate / (2 * rate), 1e-6 * 0.5 * steps * step / (2 * rate));

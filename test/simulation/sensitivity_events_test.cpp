@@ -1,4 +1,4 @@
-// Derivatives of runs over stops and dry friction, against those of the exact motion.
+// Tests derivatives of runs with stops and dry friction, against those of the exact motion.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 struct Derivative {
-  double position = 0, velocity = 0;  // of the first joint, by the first direction
+  double position = 0, velocity = 0;  // of the first joint, with respect to the first direction
   std::string lost;
   std::vector<RunEvent> events;
   int count(const std::string& what) const {
@@ -39,7 +39,7 @@ Derivative derivative_by(const std::string& parameter, const std::string& text, 
   return derivative_of(scene, scene.request({parameter}), until);
 }
 
-/// The scenes in which this was found wrong: an arm of 1 kg, 0.5 m from its hinge, under gravity.
+/// Scenes from a reported error: an arm of 1 kg, whose centre of mass is 0.5 m from its hinge, under gravity.
 std::string arm(const std::string& parameter, const std::string& joint, const std::string& simulation) {
   return R"(<robot name="p"> )" + parameter + R"( <link name="world"/>
     <link name="a"> <inertial> <origin xyz="0.5 0 0"/> <mass value="1.0"/>
@@ -64,7 +64,7 @@ std::string rubbing_arm(double step) {
              fmt::format(R"(<integrator step="{}"/> <initial joint="h" position="1"/>)", step));
 }
 
-/// Of a rod about the z axis, without gravity across it: 1.3 kg m^2. Its friction is 2 N m.
+/// Data of a rod about the z axis, without gravity across it: inertia 1.3 kg m^2, friction 2 N m.
 constexpr double kInertia = 1.3, kFriction = 2;
 std::string pushed_rod(const std::string& parameter, const std::string& effort, double speed, double step) {
   return fmt::format(R"(<robot name="rod"> <parameter name="friction" value="2"/> <parameter name="push" value="3"/>
@@ -78,23 +78,23 @@ std::string pushed_rod(const std::string& parameter, const std::string& effort, 
                      speed, parameter, effort, step);
 }
 
-// ---------------------------------------------------------------- the scenes in which it was found
+// ---------------------------------------------------------------- arms with friction and stops
 
-// The exact derivatives are those of DOP853 with events, rtol 1e-12, by differences of fourth order over 1e-4
-// (test/python/sensitivity_events_test.py). A run that turns back stands for up to a step at each reversal, of which
-// there is one here: what it is off by changes its derivative by as much.
+// The exact derivatives are differences of fourth order over 1e-4 of runs by DOP853 with events, rtol 1e-12
+// (test/python/sensitivity_events_test.py). At each reversal, the run stands still for up to one step; there is one
+// reversal here. This delay changes the derivative by as much as it changes in that time.
 TEST(SensitivityEvents, FrictionOfASwingingArm) {
   for (const double step : {1e-3, 1e-4}) {
     const Derivative found = derivative_by("fc", rubbing_arm(step), 1.6);
     EXPECT_EQ(found.lost, "");
     EXPECT_EQ(found.count("turns back"), 1);
-    // It has a speed of 7 rad/s, and its derivative changes by 3.2 in a second.
+    // The arm turns at 7 rad/s, and its derivative changes by 3.2 per second.
     EXPECT_NEAR(found.position, -0.277938, 2 * 3.2 * step) << step;
   }
 }
 
-// A hit takes ten steps whatever their length: runs have the restitution to within 5 % of the law's, and the derivative
-// of what they go on with to as much. It is small since two terms are opposite: they are 1.5.
+// A hit takes ten steps, whatever their length. So the restitution of the run, and the derivative after the hit, have
+// errors of up to 5 %. The derivative is the small sum of two opposite terms of size 1.5, to which the 5 % refer.
 TEST(SensitivityEvents, BounceOfASwingingArm) {
   const std::array<std::array<double, 2>, 2> exact = {{{1e-3, -0.5852398}, {1e-4, -0.5406955}}};
   for (const auto& [step, expected] : exact) {
@@ -109,12 +109,12 @@ TEST(SensitivityEvents, BounceOfASwingingArm) {
 
 // ---------------------------------------------------------------- closed forms
 
-// v^2 / 2a from there it rests.
+// The rod comes to rest after the distance v^2 / 2a.
 TEST(SensitivityEvents, FrictionThatBringsToRest) {
   const double braking = kFriction / kInertia, speed = 0.72;
   for (const double step : {1e-2, 2.5e-3}) {
     const std::string text = pushed_rod("", "0", speed, step);
-    const double tolerance = 2 * braking * step * step;  // it goes so far in a step
+    const double tolerance = 2 * braking * step * step;  // distance travelled in a step
     const Derivative by_speed = derivative_by("speed", text, 0.6), by_friction = derivative_by("friction", text, 0.6);
     EXPECT_EQ(by_speed.lost + by_friction.lost, "");
     EXPECT_EQ(by_speed.count("sticks"), 1);
@@ -124,7 +124,7 @@ TEST(SensitivityEvents, FrictionThatBringsToRest) {
   }
 }
 
-// Pushed back by 3 N m all the time: it turns without rest.
+// A push of 3 N m acts back all the time, so that the rod reverses without sticking.
 TEST(SensitivityEvents, ReversalWithoutRest) {
   const double braking = 5 / kInertia, back = 1 / kInertia, speed = 0.72, until = 0.5, turn = speed / braking;
   for (const double step : {1e-2, 2.5e-3}) {
@@ -136,17 +136,18 @@ TEST(SensitivityEvents, ReversalWithoutRest) {
     EXPECT_EQ(by_speed.lost + by_push.lost + by_friction.lost, "");
     EXPECT_EQ(by_speed.count("turns back"), 1);
     const double rest = until - turn;
-    // Its own course is off by a step at the reversal, in which derivatives by efforts grow: 1/I of it for a second.
+    // The run itself is off by one step at the reversal. In this time, derivatives with respect to efforts grow by 1/I
+    // per second.
     const double tolerance = 3 * step * rest / kInertia;
     EXPECT_NEAR(by_speed.position, turn + back * rest / braking, 1e-3) << step;
     EXPECT_NEAR(by_speed.velocity, back / braking, 1e-3) << step;
-    const double by_braking = -0.5 * turn * turn - back * rest * turn / braking;  // d/d(braking), back kept
+    const double by_braking = -0.5 * turn * turn - back * rest * turn / braking;  // d/d(braking) at constant `back`
     EXPECT_NEAR(by_push.position, (by_braking - 0.5 * rest * rest) / kInertia, tolerance) << step;
     EXPECT_NEAR(by_friction.position, (by_braking + 0.5 * rest * rest) / kInertia, tolerance) << step;
   }
 }
 
-// A push that grows by 3 N m in a second breaks it loose when it is as strong as friction.
+// A push that grows by 3 N m per second overcomes friction when it equals it.
 TEST(SensitivityEvents, FrictionThatIsOvercome) {
   const double growth = 3, loose = kFriction / growth, until = 1.5;
   for (const double step : {1e-2, 2.5e-3}) {
@@ -159,15 +160,15 @@ TEST(SensitivityEvents, FrictionThatIsOvercome) {
   }
 }
 
-/// A hit of the documented law while it is shallow: of an oscillator of frequency 1, let go at x = 0, v = 1.
+/// A shallow hit by the documented law: the damped oscillator of frequency 1, started at x = 0 with v = 1.
 struct Hit {
-  double duration, depth, restitution;  // depth, in which it is left, over the speed
+  double duration, depth, restitution;  // depth: at which the stop is left, over the speed
 };
 Hit hit(double ratio) {
   const double damped = std::sqrt(1 - ratio * ratio);
   const auto x = [&](double t) { return std::exp(-ratio * t) * std::sin(damped * t) / damped; };
   const auto v = [&](double t) { return std::exp(-ratio * t) * std::cos(damped * t) - ratio * x(t); };
-  double low = 1, high = kPi / damped;  // it pushes, pulls
+  double low = 1, high = kPi / damped;  // times at which the force pushes and pulls
   for (int i = 0; i < 100; ++i) {
     const double t = 0.5 * (low + high);
     (x(t) + 2 * ratio * v(t) > 0 ? low : high) = t;
@@ -175,7 +176,7 @@ Hit hit(double ratio) {
   return {low, x(low), -v(low)};
 }
 
-// Without gravity. The run's own hit is off by some hundredths, but what comes behind it is linear in the speed.
+// Without gravity. The run's hit has an error of a few hundredths, but the motion after it is linear in the speed.
 TEST(SensitivityEvents, StopTouchedAndLeft) {
   const double upper = 0.1234, until = 0.4;
   for (const double step : {4e-3, 1e-3, 1e-4}) {
@@ -189,19 +190,19 @@ TEST(SensitivityEvents, StopTouchedAndLeft) {
     EXPECT_EQ(found.count("leaves its stop"), 1);
     EXPECT_FALSE(found.is_doubtful());
     const double expected = law.depth / frequency - law.restitution * (until - law.duration / frequency);
-    // Of the run: 0.316 in the place of 0.3, at most.
+    // Tolerance: the restitution of the run is at most 0.316 instead of 0.3.
     EXPECT_NEAR(found.velocity, -law.restitution, 0.016) << step;
     EXPECT_NEAR(found.position, expected, 0.016 * until) << step;
   }
 }
 
-// The start is a direction as well.
+// Derivatives with respect to the start.
 TEST(SensitivityEvents, StopByTheStart) {
   const Scene scene{rod_with_stop(0.1234, "0 0 0", "scheme=\"em\" step=\"0.001\" tolerance=\"1e-10\"")};
   SensitivityRequest request;
   request.initial_state = true;
   const Derivative found = derivative_of(scene, request, 0.4);
-  // A start nearer to the stop is a hit that comes earlier, and a way back as much longer.
+  // From a start nearer to the stop, the hit comes earlier, and the rod travels back for as much longer.
   EXPECT_NEAR(found.position, -hit(0.497239).restitution, 0.016);
   EXPECT_NEAR(found.velocity, 0, 0.016);
 }
@@ -222,7 +223,7 @@ TEST(SensitivityEvents, StopsOfOtherSchemes) {
 
 // ---------------------------------------------------------------- events at ends of steps
 
-// A step that ends at the stop, to round-off, is on both sides of it: the exact motion has one derivative all the same.
+// A step ends at the stop up to round-off, so the run may be on either side of it. The exact motion has one derivative.
 TEST(SensitivityEvents, StopAtTheEndOfAStep) {
   const int steps = 10;
   const double half = 0.5 * 0.7 * 0.01;  // a free rod turns by 2 atan(half) in a step
@@ -234,7 +235,7 @@ TEST(SensitivityEvents, StopAtTheEndOfAStep) {
   EXPECT_NEAR(behind.velocity, -hit(0.497239).restitution, 0.016);
 }
 
-// A rod whose speed is zero at the end of a step, to round-off.
+// The rod's speed is zero at the end of a step, up to round-off.
 TEST(SensitivityEvents, FrictionThatSticksAtTheEndOfAStep) {
   const double braking = kFriction / kInertia, speed = 0.45 * braking;
   const Derivative found = derivative_by("speed", pushed_rod("", "0", speed, 0.01), 0.6);
@@ -243,9 +244,9 @@ TEST(SensitivityEvents, FrictionThatSticksAtTheEndOfAStep) {
   EXPECT_NEAR(found.velocity, 0, 1e-6);
 }
 
-// ---------------------------------------------------------------- what cannot be right
+// ---------------------------------------------------------------- doubtful events
 
-/// A rod that is pushed back from its stop, and would turn at `turn` [s] without it.
+/// A rod that is pushed away from its stop. Without the stop it would reverse at the time `turn` [s].
 std::string braked_before_stop(double turn, double upper) {
   const double push = 2, braking = push / kInertia;
   std::string text = rod_with_stop(upper, "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\"");
@@ -255,8 +256,8 @@ std::string braked_before_stop(double turn, double upper) {
   return text;
 }
 
-// It gets to the stop with half of the speed that its push takes in half a step: how fast it really is, steps cannot
-// tell.
+// The rod reaches the stop with half of the speed that the push takes away in half a step. The steps cannot resolve
+// this speed.
 TEST(SensitivityEvents, GrazedStopIsDoubtful) {
   const double turn = 0.47, braking = 2 / kInertia, height = 0.5 * braking * turn * turn;
   const double speed = 0.5 * 0.5 * braking * 0.01;
@@ -266,10 +267,10 @@ TEST(SensitivityEvents, GrazedStopIsDoubtful) {
   EXPECT_EQ(found.events[0].joint, "hinge");
   EXPECT_EQ(found.events[0].what, "touches its stop");
   EXPECT_NEAR(found.events[0].time, turn - speed / braking, 0.01);
-  EXPECT_NE(found.events[0].doubt.find("grazed"), std::string::npos) << found.events[0].doubt;
+  EXPECT_NE(found.events[0].doubt.find("grazing"), std::string::npos) << found.events[0].doubt;
 }
 
-// Which one is first depends on the parameter.
+// Two stops are touched at the same instant; the order of the events depends on the parameter.
 TEST(SensitivityEvents, EventsAtTheSameInstantAreDoubtful) {
   std::string text = rod_with_stop(0.1234, "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\"");
   const auto begin = text.find("<joint"), end = text.find("<simulation>");

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes of the tests of sensitivities.
+/// Scenes for tests of sensitivities.
 
 #include <stdexcept>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace flexarm::test {
 
-/// The text of a scene whose parameters may have other values.
+/// A scene text that can be read with other values of its parameters.
 struct Scene {
   std::string text;
 
@@ -32,7 +32,7 @@ struct Scene {
   }
 };
 
-/// The whole text of one of the scenes below.
+/// Adds an integrator to the text of one of the scenes below.
 inline std::string with_scheme(std::string scene, const std::string& scheme, double step) {
   const std::string place = "<simulation>";
   scene.insert(scene.find(place) + place.size(),
@@ -40,7 +40,7 @@ inline std::string with_scheme(std::string scene, const std::string& scheme, dou
   return scene + "</robot>";
 }
 
-/// A rod on a hinge.
+/// A rod on a hinge with damping.
 inline const std::string kPendulum = R"(<robot name="pendulum">
   <parameter name="damping" value="0.5" min="0"/> <parameter name="payload" value="2"/>
   <parameter name="angle" value="1.2"/> <parameter name="speed" value="0.7"/> <parameter name="reach" value="0.8"/>
@@ -53,12 +53,12 @@ inline const std::string kPendulum = R"(<robot name="pendulum">
     <probe name="end" link="rod" at="1 0 0"/> </simulation>
   )";
 
-/// The same, held by a controller behind an elastic gear, by a rotor as heavy as the rod.
+/// The pendulum with a controller behind an elastic gear, and a rotor whose inertia is as large as the rod's.
 inline const std::string kGearedPendulum = kPendulum + R"(
   <drive joint="hinge" rotor_inertia="1.5" stiffness="200" damping="0.5"/>
   <servo joint="hinge" mode="position" kp="40" kd="1" set_point="0.5"/>)";
 
-/// A boom that bends, and a load on a hinge at its end.
+/// A flexible boom with a load on a hinge at its end.
 inline std::string flexible_arm(const std::string& wrist_axis) {
   return R"(<robot name="arm">
   <parameter name="young" value="7e9"/> <parameter name="payload" value="0.4"/> <parameter name="damping" value="0.3"/>
@@ -78,7 +78,7 @@ inline std::string flexible_arm(const std::string& wrist_axis) {
   )x";
 }
 
-/// A rod that turns freely, until a stop is in its way.
+/// A rod that turns freely until it hits a stop.
 inline std::string rod_with_stop(double upper, const std::string& gravity, const std::string& integrator) {
   return fmt::format(R"(<robot name="rod"> <parameter name="speed" value="0.7"/> <link name="world"/>
     <joint name="hinge" type="revolute"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>

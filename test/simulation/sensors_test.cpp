@@ -1,4 +1,4 @@
-// Sensors: what they measure, when, and with which errors.
+// Tests what sensors measure, at which times, and with which errors.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ using scene::SensorKind;
 
 constexpr double kLength = 1.2, kStiffness = 300;  // m, N m^2
 
-/// A cantilever along x with small loads at its tip, so that linear theory holds.
+/// A cantilever along x. Loads at its tip are small, so that linear theory holds.
 SceneBuilder cantilever() {
   SceneBuilder b;
   b.beam("arm", {{kLength, 0, 0}}, section(1e6, 1e5, 200, kStiffness, 0.5, 0.02, 0.01), 3, 2);
@@ -22,8 +22,8 @@ SceneBuilder cantilever() {
   return b;
 }
 
-// Bending by P at the tip: M(s) = P (L - s); the fibre at y, z from the line is strained by -y K_z + z K_y, and by
-// N/EA. The axial force has an arm of the displacement, 6e-7 m: 3e-6 of the moments.
+// A force P at the tip gives M(s) = P (L - s). The fibre at y, z has the strain -y K_z + z K_y + N/EA. The axial force
+// adds a moment by the deflection of 6e-7 m, 3e-6 of the moments.
 TEST(Sensors, MeasureTheStrainOfALoadedCantilever) {
   const double p = 3e-4, q = 2e-4, axial = 1e-3;
   SceneBuilder b = cantilever();
@@ -46,7 +46,7 @@ TEST(Sensors, MeasureTheStrainOfALoadedCantilever) {
 }
 
 TEST(Sensors, MeasureAtTheirPlaceBesideTheMassCentroid) {
-  // The reference line is 0.05 m beside the mass centroid, about which the section is bent.
+  // The reference line is 0.05 m beside the mass centroid. The section bends about the centroid.
   SceneBuilder b;
   scene::MatrixSection matrices;
   const double ea = 1e4, m = 0.5, c = 0.05;
@@ -66,11 +66,12 @@ TEST(Sensors, MeasureAtTheirPlaceBesideTheMassCentroid) {
   EXPECT_NEAR(simulation.sample(0).values[0], expected, 1e-6 * std::abs(expected));
 }
 
-/// A flexible arm with a body at its end that a motion spins up, with an inertial unit in the span and one in the body.
+/// A flexible arm with a body at its end. A prescribed motion spins it up. One inertial unit is in the span, one in the
+/// body.
 SceneBuilder spinning_arm(double step) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
-  // So much rotary inertia, and so soft, that steps resolve the fastest modes.
+  // Rotary inertia is so large, and the arm so soft, that steps resolve the fastest modes.
   b.beam("arm", {{0.8, 0, 0}}, scene::DirectSection{2e3, 1e3, 1e3, 80, 100, 120, 4, 4, 4, 4}, 2, 2);
   b.joint("hinge", scene::JointKind::Revolute, "world", "arm", {0, 0, 0.5}, {0, 0, 1});
   b.body("hand", 0.7, {0.05, 0.02, 0}, Vector3(0.1, 0.2, 0.15).asDiagonal());
@@ -86,8 +87,8 @@ SceneBuilder spinning_arm(double step) {
   return b;
 }
 
-/// Largest differences of what the units measure at t = 0.2 ... 0.8 s from differences of the places and poses of the
-/// probes at the same points, taken symmetrically about the sample: those are of second order, too.
+/// Largest differences between the inertial units and the kinematics of probes at the same points, for t = 0.2 ... 0.8
+/// s. The kinematics come from central differences of second order.
 std::array<double, 2> errors_against_kinematics(double step) {
   Simulation simulation(spinning_arm(step).scene);
   std::vector<std::array<Pose, 2>> poses;
@@ -134,7 +135,7 @@ TEST(Sensors, OfInertiaMeasureGravityAtRest) {
   EXPECT_GT(values[5], 9.7);
 }
 
-/// A body that moves along a rail at 0.5 m/s, and how it is seen.
+/// A body that moves along a rail at 0.5 m/s, with a sensor on it.
 SceneBuilder moving_body(const scene::Sensor& sensor) {
   SceneBuilder b;
   b.body("cart", 1, Vector3::Zero(), Matrix3::Identity());
@@ -188,7 +189,7 @@ TEST(Sensors, HaveBiasAndNormalNoise) {
     within += std::abs(error[1]) < 0.2;
     EXPECT_NEAR(2 * std::acos(std::abs(values[6])), 0.5, 1e-7);
   }
-  // Each within four standard deviations of what is expected of so many samples.
+  // Each mean is within four standard deviations of its expected value for this number of samples.
   const double root = std::sqrt(kSamples);
   for (int k = 0; k < 3; ++k) {
     const double deviation = sensor.noise[k];
@@ -221,7 +222,7 @@ TEST(Sensors, HaveNoiseOfTheirSeedAndName) {
   EXPECT_NE(noise, noise_of(other));
 }
 
-// Reactions and what a sensor has sampled are in the state.
+// Reactions and the last samples are part of the state.
 TEST(Sensors, GoOnFromACheckpointAsIfNothingHadBeen) {
   SceneBuilder b = spinning_arm(2e-3);
   b.sensor("root", SensorKind::Reaction, "arm");

@@ -1,4 +1,4 @@
-// Servos that are switched to other modes while they run, and set points that move.
+// Tests servos whose mode is switched during a run, and set points that move.
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,10 +17,10 @@ using scene::JointKind;
 using Mode = ServoMode;
 
 constexpr double kStep = 1e-3, kLoad = 5, kMass = 2;
-/// Forces and ways of a block that rests: Newton's tolerance, 1e-12 of a metre, times kp and over a step.
+/// Tolerance for forces and displacements of a block at rest: Newton's tolerance, 1e-12 m, times kp, and over a step.
 constexpr double kRest = 1e-8;
 
-/// A block on a rail that a constant force pushes, with a servo of mode position and gains of mode velocity.
+/// A block on a rail that a constant force pushes. Its servo is in mode position and also has gains for mode velocity.
 SceneBuilder block_on_rail() {
   SceneBuilder b;
   b.scene.integrator.step = kStep;
@@ -66,7 +66,7 @@ TEST(ServoModes, SwitchingIsNoBump) {
       }
 }
 
-/// The block while its servo lets it go at 1 m/s, until that is steady.
+/// The block with a servo in mode velocity at 1 m/s, to be run until the motion is steady.
 SceneBuilder sliding_block(double position_ki) {
   SceneBuilder b = block_on_rail();
   b.scene.servos.clear();
@@ -77,8 +77,9 @@ SceneBuilder sliding_block(double position_ki) {
   return b;
 }
 
-/// What follows where kp, kd and ki put the roots of block and servo at -10, -20 and -30/s, the block comes at 1 m/s
-/// and the integral begins with kd v: 2 x'' + 120 x' + 2200 x + 12000 (int x dt) = 120.
+/// Exact motion after the switch to mode position, relative to the set point: 2 x'' + 120 x' + 2200 x + 12000 (int x
+/// dt) = 120. The gains put the roots of block and servo at -10, -20 and -30/s. The block arrives with 1 m/s, and the
+/// integral begins with kd v.
 struct Braking {
   static double position(double t) {
     return 0.25 * std::exp(-10 * t) - 0.4 * std::exp(-20 * t) + 0.15 * std::exp(-30 * t);
@@ -107,7 +108,7 @@ double error_of_braking(const std::string& scheme, double step, bool is_sampled)
   for (int i = 1; i * step < 0.3; ++i) {
     EXPECT_TRUE(simulation.step().converged);
     const double t = i * step;
-    const double mean = (Braking::velocity(t) - Braking::velocity(t - step)) / step;  // over the step
+    const double mean = (Braking::velocity(t) - Braking::velocity(t - step)) / step;  // mean over the step
     const double effort = kMass * (scheme == "em" ? mean : Braking::acceleration(t)) - kLoad;
     if (i == 1 && is_sampled) {
       EXPECT_NEAR(simulation.effort(0), -kLoad, 1e-5) << "the first sample";
@@ -118,8 +119,8 @@ double error_of_braking(const std::string& scheme, double step, bool is_sampled)
   return largest;
 }
 
-// The effort is that of the linear equation, without a bump of kd v = 120 N: second order in the step, first with
-// samples.
+// The effort follows the exact solution without a jump of kd v = 120 N. The error is of second order in the step, of
+// first order with a sampled servo.
 TEST(ServoModes, SwitchingToPositionWhileItMovesIsNoBump) {
   for (const char* scheme : {"em", "newmark"}) {
     const double coarse = error_of_braking(scheme, 1e-3, false), fine = error_of_braking(scheme, 5e-4, false);
@@ -131,7 +132,7 @@ TEST(ServoModes, SwitchingToPositionWhileItMovesIsNoBump) {
   }
 }
 
-/// Modes and gains of a servo that is switched while it moves, and the largest rate of its effort with them.
+/// Largest rate at which the effort of a servo in the given mode changes in motion.
 double rate_of_effort(const scene::ServoDescription& servo, Mode mode, double velocity, double acceleration) {
   if (mode == Mode::Effort) return 0;
   if (mode == Mode::Position)
@@ -139,8 +140,8 @@ double rate_of_effort(const scene::ServoDescription& servo, Mode mode, double ve
   return servo.other_modes[0].kp * std::abs(acceleration) + servo.other_modes[0].ki * 0.01;
 }
 
-// From each mode to each other one, of a block that is accelerated: over the step in which it is switched the effort
-// changes by what both laws make of the motion, which the step's length is a factor of.
+// Switches an accelerated block between all pairs of modes. In the step of the switch, the effort may change only by
+// what both laws change over a step in this motion.
 TEST(ServoModes, NoPairOfModesHasABumpInMotion) {
   const double coarse = 1e-3;
   for (const char* scheme : {"em", "newmark"})
@@ -186,7 +187,7 @@ TEST(ServoModes, NoPairOfModesHasABumpInMotion) {
           }
 }
 
-// Where nothing integrates the set point takes over what the motor gave: what rests stays where it is.
+// Without an integral, the set point is chosen so that the effort is kept. So a block at rest stays where it is.
 TEST(ServoModes, SwitchingWithoutAnIntegralMovesTheSetPoint) {
   SceneBuilder b = block_on_rail();
   b.scene.servos[0].ki = b.scene.servos[0].other_modes[0].ki = 0;
@@ -204,7 +205,7 @@ TEST(ServoModes, SwitchingWithoutAnIntegralMovesTheSetPoint) {
   }
 }
 
-// A servo that is off gives nothing that could be taken over.
+// A servo that is off has no effort that the other mode could take over.
 TEST(ServoModes, SwitchedOffItTakesOverNothing) {
   for (const double ki : {0.0, 12000.0}) {
     Simulation simulation(sliding_block(ki).scene);
@@ -218,7 +219,7 @@ TEST(ServoModes, SwitchedOffItTakesOverNothing) {
   }
 }
 
-// What is commanded beyond the joint's limit acts as the limit does.
+// A commanded effort beyond the joint's limit counts with the value of the limit.
 TEST(ServoModes, SwitchingIsNoBumpBesideACommandThatIsCut) {
   SceneBuilder b = block_on_rail();
   b.scene.joints[0].effort_limit = 4 * kLoad;
@@ -245,7 +246,7 @@ TEST(ServoModes, EachTakesSetPointsOfItsOwn) {
   run(simulation, 1);
   EXPECT_NEAR(simulation.position(0) - begin, 0.1, kRest);
   simulation.switch_mode(0, Mode::Effort);
-  simulation.command_set_point(0, 3 - kLoad);  // 3 N are left
+  simulation.command_set_point(0, 3 - kLoad);  // 3 N remain to accelerate the block
   const double rate = simulation.velocity(0);
   run(simulation, 1);
   EXPECT_NEAR(simulation.velocity(0) - rate, 3 / kMass, kRest);
@@ -313,7 +314,7 @@ TEST(ServoModes, WithoutAServoOrGainsItIsSaidWhatToWrite) {
   EXPECT_THROW(without.set_point(0), std::invalid_argument);
 }
 
-// A set point that is a polynomial of degree 2 is told exactly by its value, rate and acceleration.
+// A set point that is a quadratic polynomial in time is described exactly by its value, rate and acceleration.
 TEST(MovingSetPoints, DoWhatAFunctionOfTheSceneDoes) {
   const double c0 = 0.1, c1 = 0.2, c2 = 0.15;
   for (const char* scheme : {"em", "newmark", "hht1"})
@@ -328,7 +329,7 @@ TEST(MovingSetPoints, DoWhatAFunctionOfTheSceneDoes) {
         commanded.command_set_point(0, c0 + t * (c1 + t * c2), c1 + 2 * c2 * t, 2 * c2);
         ASSERT_TRUE(function.step().converged);
         ASSERT_TRUE(commanded.step().converged);
-        // Rates of functions are differences, good to 1e-9, and so are efforts to kd times that.
+        // Rates of functions are differences with an error of 1e-9, so efforts have an error of kd times that.
         ASSERT_NEAR(commanded.position(0), function.position(0), 1e-9) << scheme << sample_time << " " << n;
       }
       EXPECT_NEAR(commanded.set_point(0), c0 + 0.5 * (c1 + 0.5 * c2), 1e-15);

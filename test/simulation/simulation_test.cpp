@@ -1,4 +1,4 @@
-// The façade: names, coordinates, frames, observables, errors.
+// Tests the façade Simulation: names, coordinates, frames, observables, errors.
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 using scene::JointKind;
 
-/// Two rigid links and a flexible one: hinge (z), rail (x), ball.
+/// Two rigid links and a flexible one, connected by a hinge about z, a rail along x, and a ball joint.
 SceneBuilder small_arm() {
   SceneBuilder b;
   b.body("base", 2, {0, 0, 0.1}, Matrix3::Identity());
@@ -54,7 +54,7 @@ TEST_F(SmallArm, NamesItsCoordinatesAndLinks) {
   EXPECT_DOUBLE_EQ(s.beam_radius(2), 0.02);
   EXPECT_EQ(s.scheme(), "em");
   EXPECT_DOUBLE_EQ(s.step_size(), 0.002);
-  // hinge 1, rail 1, four free nodes of the boom, ball 3
+  // Unknowns: hinge 1, rail 1, four free nodes of the boom 6 each, ball 3.
   EXPECT_EQ(s.degrees_of_freedom(), 1u + 1 + 4 * 6 + 3);
 }
 
@@ -72,13 +72,13 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
   EXPECT_LT(s.tip_pose(2).orientation.angularDistance(quarter), 1e-7) << "axes as the link's";
   EXPECT_LT(s.link_pose(3).orientation.angularDistance(quarter * Quaternion(Eigen::AngleAxisd(0.3, Vector3::UnitZ()))),
             1e-7);
-  // v = w x r + rate along the turned x axis
+  // v = w x r, plus the rate along the rotated x axis.
   EXPECT_LT((s.probe(0).velocity - Vector3(-0.5 * 1.3, -0.2, 0)).norm(), 1e-13);
   EXPECT_LT((s.probe(1).pose.position - Vector3(0, 1.3, 0.7)).norm(), 1e-14);
 }
 
-// The mean of the velocities at both ends of a step is off the secant by no more than the secants of the last steps
-// differ, which is little beside the velocity itself.
+// The secant over a step differs from the mean of the velocities at both ends by at most the changes between the last
+// secants. These changes are small against the velocity itself.
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
   for (const std::string_view name : scheme_names()) {
     SimulationOptions options;
@@ -222,7 +222,7 @@ TEST(Simulation, MomentaAreThoseOfTheMotion) {
   EXPECT_NEAR(s.energies().kinetic, 0.5 * 2 * velocity.squaredNorm() + 0.5 * 3 * 16, 1e-12);
 }
 
-/// What an exception of this kind says; empty: there was none.
+/// The message of the exception of type Error that `call` throws; empty if it throws none.
 template <class Error, class Call>
 std::string what_of(const Call& call) {
   try {
@@ -258,7 +258,7 @@ TEST_F(SmallArm, SaysWhichIndexIsWrong) {
 TEST_F(SmallArm, RefusesLessThanNoPointsBetweenNodes) {
   const Simulation s(scene_);
   const std::string expected = "between: expected a number of points >= 0, got -1";
-  for (const std::size_t link : {1u, 2u}) {  // rigid, flexible
+  for (const std::size_t link : {1u, 2u}) {  // a rigid link and a flexible one
     std::vector<BeamPoint> points;
     EXPECT_EQ(what_of<std::invalid_argument>([&] { s.beam_points(link, -1, points); }), expected);
     EXPECT_TRUE(points.empty());
@@ -274,8 +274,7 @@ TEST_F(SmallArm, ExplainsNoResultOfAnotherScene) {
   EXPECT_FALSE(s.explain(result).empty()) << "the place need not be known";
   const auto expect_refused = [&](const StepResult::Place& place) {
     result.failure.place = place;
-    EXPECT_NE(what_of<std::invalid_argument>([&] { s.explain(result); }).find("none of this scene's"),
-              std::string::npos);
+    EXPECT_NE(what_of<std::invalid_argument>([&] { s.explain(result); }).find("not in this scene"), std::string::npos);
   };
   expect_refused({4, -1, -1, -1, Vector3::Zero()});
   expect_refused({-1, -1, 5, -1, Vector3::Zero()});

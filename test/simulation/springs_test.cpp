@@ -1,4 +1,4 @@
-// Springs between points of two links.
+// Tests springs between points of two links.
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -27,7 +27,7 @@ void add_spring(SceneBuilder& b, const std::string& from, const Vector3& from_at
   b.scene.force_elements.push_back(spring);
 }
 
-/// Two carts on a rail with a spring between them.
+/// Two carts on rails, connected by a spring.
 SceneBuilder carts(double damping) {
   SceneBuilder b;
   for (const auto& [name, mass, place] : {std::tuple("left", 2.0, 0.0), std::tuple("right", 3.0, 1.0)}) {
@@ -38,7 +38,7 @@ SceneBuilder carts(double damping) {
   return b;
 }
 
-// Two masses: omega^2 = k / m, 2 zeta omega = c / m with the reduced mass m.
+// Two masses: omega^2 = k / m, 2 zeta omega = c / m, with the reduced mass m.
 TEST(PointSprings, SwingAtTheirFrequency) {
   const double reduced = 2.0 * 3.0 / 5.0, damping = 4;
   const Simulation simulation(carts(damping).scene);
@@ -53,7 +53,7 @@ TEST(PointSprings, SwingAtTheirFrequency) {
   EXPECT_TRUE(found);
 }
 
-// A mass that hangs between two springs on a wall, in equilibrium: they are stretched by m g / k each way.
+// A mass hangs on a spring in equilibrium, which stretches the spring by m g / k.
 TEST(PointSprings, CarryAWeight) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -10};
@@ -67,7 +67,7 @@ TEST(PointSprings, CarryAWeight) {
   EXPECT_NEAR(simulation.energies().strain, 0.5 * 15 * 15 / kStiffness, 1e-9);
 }
 
-// Named, it puts out how long it is, and the weight that it holds; without a name it has no columns.
+// A spring with a name has columns for its length and its tension, here the weight. A spring without a name has none.
 TEST(PointSprings, PutOutLengthAndTension) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -10};
@@ -88,7 +88,7 @@ TEST(PointSprings, PutOutLengthAndTension) {
   EXPECT_NEAR(columns.row(simulation, {})[2], 15, 1e-9 * kStiffness);
 }
 
-/// A flexible arm and a flying body, tied to each other and to the world.
+/// A flexible arm and a flying body, tied to each other and to the world by springs.
 SceneBuilder tied() {
   SceneBuilder b;
   b.beam("arm", {{0.6, 0, 0}, {0.9, 0.2, 0.1}}, section(2e4, 1e4, 200, 250, 0.5, 0.02, 0.01), 3, 2);
@@ -122,7 +122,7 @@ TEST(PointSprings, KeepTheEnergyAccount) {
   }
 }
 
-// Both fly free: internal forces change no momentum.
+// Arm and body fly freely: internal forces do not change the momenta.
 TEST(PointSprings, KeepMomenta) {
   SceneBuilder b = tied();
   b.scene.joints[0].kind = scene::JointKind::Floating;
@@ -134,7 +134,7 @@ TEST(PointSprings, KeepMomenta) {
   EXPECT_LE((simulation.angular_momentum() - spin).norm(), 1e-9 * spin.norm());
 }
 
-// Newton's method has the exact tangent, along the tree as by the matrix: it converges quadratically.
+// The tangent is exact with the tree and with the matrix, so Newton's method converges quadratically.
 TEST(PointSprings, AreSolvedInFewIterations) {
   for (const char* scheme : {"em0", "newmark", "m1"}) {
     SceneBuilder b = tied();

@@ -1,4 +1,4 @@
-// Halving, recovery, failure: a step either succeeds or leaves the last good state.
+// Tests halving, recovery and failure of steps: a step either succeeds or leaves the last good state.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using scene::JointKind;
 
-/// A rotor that turns by more than a quarter turn in a step until its damper has slowed it down.
+/// A rotor that turns by more than a quarter turn in a step, until its damper has slowed it down.
 SceneBuilder fast_rotor(double speed, double damping) {
   SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Vector3(1, 1, 1).asDiagonal());
@@ -61,7 +61,7 @@ TEST(StepControl, FailureLeavesTheLastGoodState) {
   EXPECT_DOUBLE_EQ(simulation.time(), 0);
   EXPECT_TRUE(is_finite(state_of(simulation)));
   EXPECT_DOUBLE_EQ(simulation.velocity(0), 1000);
-  // It fails again in the same way, and a reset does not cure it; neither does any harm.
+  // The step fails again in the same way, also after a reset. The state stays valid.
   EXPECT_FALSE(simulation.step().converged);
   simulation.reset();
   EXPECT_FALSE(simulation.step().converged);
@@ -102,7 +102,7 @@ TEST(StepControl, StaticFailureLeavesTheStateUntouched) {
   EXPECT_TRUE(is_finite(state_of(simulation)));
 }
 
-// Numbers on their way to zero would make a step ten times as long.
+// Arithmetic with subnormal numbers would make a step ten times as slow.
 TEST(StepControl, SubnormalNumbersAreZeros) {
   SceneBuilder b;
   b.body("ball", 1, Vector3::Zero(), Matrix3::Identity());

@@ -1,4 +1,5 @@
-// Newton's method does not feel how stiff a beam is against stretch and shear (docs/notes/newton.md).
+// Tests that the number of Newton iterations does not depend on a beam's stiffness against stretch and shear
+// (docs/notes/newton.md).
 #include <cmath>
 #include <cstdio>
 
@@ -11,8 +12,8 @@
 namespace flexarm::test {
 namespace {
 
-/// Iterations per step that are asked for, whatever the stiffness: two or three that converge quadratically from an
-/// extrapolated guess to round-off, and as many again for what the load begins with.
+/// Bound of the mean number of iterations per step, for any stiffness: two or three for quadratic convergence from an
+/// extrapolated guess to round-off, and as many again for the first steps after the load begins.
 constexpr double kMostIterations = 6;
 
 double iterations_per_step(const SceneBuilder& builder, const SimulationOptions& options, int steps) {
@@ -40,7 +41,7 @@ double iterations_per_step(const SceneBuilder& builder, const std::string& schem
 
 class Stiffness : public ::testing::TestWithParam<const char*> {};
 
-// A cantilever that a force at its tip bends, EI = L = mass = 1.
+// A cantilever with EI = L = mass = 1, bent by a force at its tip.
 TEST_P(Stiffness, OfStretchAndShearCostsNoIterations) {
   for (const double stretch : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12}) {
     SCOPED_TRACE(fmt::format("EA = {}", stretch));
@@ -54,7 +55,7 @@ TEST_P(Stiffness, OfStretchAndShearCostsNoIterations) {
   }
 }
 
-// Rods of the radius 1/slenderness that fall from the horizontal.
+// Falling rods of the radius 1/slenderness.
 TEST_P(Stiffness, OfSlenderRodsCostsNoIterations) {
   for (const double slenderness : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
     SCOPED_TRACE(fmt::format("slenderness {}", slenderness));
@@ -69,7 +70,7 @@ TEST_P(Stiffness, OfSlenderRodsCostsNoIterations) {
   }
 }
 
-/// A beam with EI = L = mass = 1, EA in proportion to GA, and the section of a rod of that stretch.
+/// A beam with EI = L = mass = 1, EA proportional to GA, and the rotary inertia of a rod with this EA.
 scene::BeamDescription& unit_beam(SceneBuilder& b, const std::string& name, double stretch) {
   const double rotary = 2 / stretch;
   return b.beam(name, {{1, 0, 0}}, section(stretch, stretch / 2.6, 0.8, 1, 1, rotary, rotary / 2), 8, 2);
@@ -94,7 +95,7 @@ SceneBuilder double_pendulum(double stretch) {
   return b;
 }
 
-/// A beam whose hub is brought to a turn a second.
+/// A beam whose hub is accelerated to about one turn per second.
 SceneBuilder spin_up(double stretch) {
   SceneBuilder b;
   unit_beam(b, "beam", stretch);
@@ -106,9 +107,9 @@ SceneBuilder spin_up(double stretch) {
 
 class UnfeltStiffness : public ::testing::TestWithParam<const char*> {};
 
-// What is a thousand, or a hundred million times stiffer against stretch and shear than against bending bends as it
-// does, and so do Newton's iterations: nothing feels how stiff it is in other ways. One step in fifty may fall on the
-// other side of the tolerance. Which schemes do feel it is in docs/notes/newton.md.
+// A beam that is 1e3 or 1e8 times stiffer against stretch and shear than against bending moves alike. So the iterations
+// should be the same, whatever the stiffness. One step in fifty may need one more, because it is just above the
+// tolerance. docs/notes/newton.md lists the schemes for which this does not hold.
 TEST_P(UnfeltStiffness, CostsNoIterations) {
   SimulationOptions options;
   options.scheme = GetParam();

@@ -1,4 +1,4 @@
-// Stops of joints and at the ends of lines: what they let in, give back and take, at any speed and under any force.
+// Tests stops of joints and at the ends of lines: penetration, restitution and energy at any speed and under any force.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ void start(SceneBuilder& b, const std::string& coordinate, double position, doub
   b.scene.initial_joints.push_back({coordinate, position, velocity, {}, true});
 }
 
-/// 2 kg on a rail along x, between stops at +-0.5 m.
+/// A mass of 2 kg on a rail along x, between stops at +-0.5 m.
 SceneBuilder carriage(double speed) {
   SceneBuilder b;
   b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
@@ -38,7 +38,8 @@ SceneBuilder carriage(double speed) {
 
 constexpr double kStretch = 4e7;  // stiffness of the beam below [N]
 
-/// The same sliding along a cantilever of `elements` elements over 10 m, so heavy that a hit does not move it.
+/// The mass slides along a cantilever of `elements` elements over 10 m. The cantilever is so heavy that a hit does not
+/// move it.
 SceneBuilder rider(int elements, double position, double speed) {
   SceneBuilder b;
   b.beam("rail", {{10, 0, 0}}, section(kStretch, kStretch, 4e7, 5e7, 1e4, 200, 100), elements, 2);
@@ -49,11 +50,11 @@ SceneBuilder rider(int elements, double position, double speed) {
   return b;
 }
 
-/// What was seen of a run.
+/// Observations of a run.
 struct Watch {
-  double deepest = 0;        // beyond `limit`
-  double energy_defect = 0;  // of the largest energy
-  int halvings = 0;          // most in a step
+  double deepest = 0;        // largest depth beyond `limit`
+  double energy_defect = 0;  // relative to the largest energy
+  int halvings = 0;          // largest number in one step
 };
 
 Watch watch(Simulation& simulation, double limit, int steps) {
@@ -76,8 +77,8 @@ Watch watch(Simulation& simulation, double limit, int steps) {
   return out;
 }
 
-// Steps of the scene leave 2 % of the speed, halved ones of a fifth of a hit at most a tenth of what is given back
-// (docs/notes/stops.md).
+// Accuracy of the restitution (docs/notes/stops.md): full steps have an error of 2 % of the speed. Halved steps of a
+// fifth of a hit have at most a tenth of the restitution.
 constexpr double kRestitution = 0.3, kOfRestitution = 0.03;
 
 class Stops : public ::testing::TestWithParam<const char*> {};
@@ -86,11 +87,11 @@ TEST_P(Stops, HoldACarriageAtAnySpeed) {
   for (const double speed : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
     SCOPED_TRACE(speed);
     Simulation simulation(carriage(speed).scene, options(GetParam()));
-    const double hit = kLimit / speed / kStep;  // in steps
+    const double hit = kLimit / speed / kStep;  // time of the first hit, in steps
     const Watch seen = watch(simulation, kLimit, static_cast<int>(hit + std::min(2 * hit, 30.0)) + 2);
     EXPECT_LT(seen.deepest, 0.1 * 2 * kLimit);
     EXPECT_LE(seen.halvings, 20) << "two hits";
-    if (hit > 10) {  // later ones fall into the same step
+    if (hit > 10) {  // otherwise later hits fall into the same step
       EXPECT_NEAR(-simulation.velocity(0) / speed, kRestitution, kOfRestitution);
     }
     EXPECT_LT(seen.energy_defect, 1e-11);
@@ -107,14 +108,14 @@ TEST_P(Stops, HoldASliderAtAnySpeed) {
       EXPECT_LT(seen.deepest, 0.1 * length / elements);
       EXPECT_LE(seen.halvings, 14);
       EXPECT_NEAR(-simulation.velocity(0) / speed, kRestitution, kOfRestitution);
-      // The round-off of strains makes a force, which works over the way.
+      // Round-off of strains gives a force, which does work over the distance.
       const double round_off = kStretch * 1e-16 * elements, energy = speed * speed;
       EXPECT_LT(seen.energy_defect, round_off * 2 * way / energy + 1e-10);
     }
 }
 
-// A range of 1 mrad, which 200 rad/s crosses in 5 us: seven hits fall into the first step of 10 ms (they would in 9.8
-// ms with a restitution of 0.3, in 5.8 ms with 0.33, and the eighth not before 17 ms).
+// A range of 1 mrad, which 200 rad/s crosses in 5 us. Seven hits fall into the first step of 10 ms. With a restitution
+// of 0.3 they would take 9.8 ms, with 0.33 5.8 ms, and the eighth hit would come after 17 ms.
 TEST_P(Stops, ThrowAnArmToAndFroWithinAStep) {
   constexpr double kRange = 1e-3, kSpeed = 200;
   SceneBuilder b;
@@ -133,7 +134,7 @@ TEST_P(Stops, ThrowAnArmToAndFroWithinAStep) {
   const double speed = -simulation.velocity(0) / kSpeed;
   EXPECT_GT(speed, std::pow(kRestitution, 7));
   EXPECT_LT(speed, std::pow(kRestitution + kOfRestitution, 7));
-  // Angles of 2e-7 rad, those of the shortest sub-steps, are differences of orientations of round-off 2e-16.
+  // In the shortest sub-steps, angles of 2e-7 rad are differences of orientations with a round-off of 2e-16.
   const Energies& after = simulation.energies();
   EXPECT_NEAR((after.total() + after.dissipated) / energy, 1, 1e-9 * first.halvings);
   EXPECT_LT(watch(simulation, kRange / 2, 9).deepest, 0.1 * kRange);
@@ -141,7 +142,7 @@ TEST_P(Stops, ThrowAnArmToAndFroWithinAStep) {
 
 INSTANTIATE_TEST_SUITE_P(Conserving, Stops, ::testing::Values("em", "std", "edmc2"));
 
-// The force at the end of the step does by Newmark's rule what the account says.
+// In the Newmark family the force acts at the end of the step. The energy account must hold with it.
 TEST(Stop, OfNewmarksFamily) {
   for (const char* scheme : {"newmark", "hht3"})
     for (const double speed : {0.1, 10.0, 100.0}) {
@@ -150,12 +151,13 @@ TEST(Stop, OfNewmarksFamily) {
       const Watch seen = watch(simulation, kLimit, static_cast<int>(kLimit / speed / kStep) + 30);
       EXPECT_LT(seen.deepest, 0.1 * 2 * kLimit);
       EXPECT_NEAR(-simulation.velocity(0) / speed, kRestitution, 0.1) << "of first order in the step";
-      // The dissipation of Hilber, Hughes and Taylor is not in the account.
+      // The dissipation of the Hilber-Hughes-Taylor schemes is not in the account.
       EXPECT_LT(seen.energy_defect, scheme == std::string("newmark") ? 1e-10 : 0.05);
     }
 }
 
-// To the same accuracy as the usual one; at 1 m/s, a hit begins and ends between steps.
+// Stops with a given restitution have the same accuracy as those with the default. At 1 m/s, a hit begins and ends
+// between the ends of steps.
 TEST(Stop, GivesBackWhatTheSceneAsks) {
   for (const double restitution : {0.1, 0.6, 1.0}) {
     SCOPED_TRACE(restitution);
@@ -187,7 +189,8 @@ TEST(Stop, HoldsWhateverPresses) {
   EXPECT_GT(slider.position(0), 10);
 }
 
-// Stiffness and damping of a stop are those for the inertia at the start: it holds a thousand times as much, too.
+// Stiffness and damping of a stop are chosen for the inertia at the start. The stop also holds a thousand times this
+// inertia.
 TEST(Stop, HoldsAnArmThatHasGrown) {
   using scene::JointKind;
   SceneBuilder b;
@@ -207,7 +210,7 @@ TEST(Stop, HoldsAnArmThatHasGrown) {
   EXPECT_LT(deepest, 0.1 * 2 * kLimit);
 }
 
-// Both limits at one place hold the joint there.
+// Two limits at one position hold the joint there.
 TEST(Stop, OfNoRange) {
   SceneBuilder b = carriage(1);
   b.scene.joints[0].limits = scene::JointLimits{0, 0};
@@ -234,7 +237,8 @@ TEST(Stop, OfATravelThatFollowsAnAngle) {
   EXPECT_LT(simulation.velocity(0), 0) << "it is thrown back";
 }
 
-// What is driven has no stops: it is said what drives it where it cannot go, of travels that follow an angle, too.
+// A driven coordinate has no stops. A motion beyond the end of the line is an error that names the drive, also for
+// travels that follow an angle.
 TEST(Stop, NoneOfAMotionBeyondTheEnd) {
   for (const JointKind rotation : {JointKind::Fixed, JointKind::Screw}) {
     SceneBuilder b = rider(40, 9, 0);

@@ -1,4 +1,4 @@
-// A simulation goes on from the state of another one with other settings.
+// Tests that a simulation continues from the state of another simulation with other settings.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Simulation after_steps(const scene::SceneDescription& scene, int steps) {
   return simulation;
 }
 
-/// Bit for bit, whatever the schemes make of it.
+/// Expects equal positions and velocities, bit for bit.
 void expect_same_motion(const Simulation& a, const Simulation& b) {
   EXPECT_EQ(a.time(), b.time());
   for (std::size_t i = 0; i < a.coordinate_names().size(); ++i)
@@ -44,7 +44,7 @@ TEST(TakeOver, OfTheSameSettingsIsACopy) {
     ASSERT_TRUE(from.step().converged);
     ASSERT_TRUE(to.step().converged);
   }
-  // Kept factors of the tangent are not part of a state: the same to within Newton's tolerance.
+  // Kept factors of the tangent are not part of a state, so the motions agree only to within Newton's tolerance.
   for (std::size_t i = 0; i < from.coordinate_names().size(); ++i)
     EXPECT_NEAR(to.position(i), from.position(i), 1e-6) << from.coordinate_names()[i];
 }

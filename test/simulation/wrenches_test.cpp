@@ -1,4 +1,4 @@
-// Wrenches from outside: what they do, where they are kept, and what is refused.
+// Tests wrenches that are applied from outside: their effect, how the state keeps them, and which are refused.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,8 +26,7 @@ AppliedWrench wrench_on(const Simulation& simulation, const std::string& link, c
 
 class Wrenches : public ::testing::TestWithParam<std::string> {};
 
-// A wrench that is applied acts as the scene's own load at that point does. Where there is a node, a beam's mesh is not
-// changed by a load there.
+// A wrench acts like a load of the scene at the same point. Where the beam has a node, a load does not change its mesh.
 TEST_P(Wrenches, ActAsLoadsOfTheScene) {
   for (const bool follows : {false, true})
     for (const auto& [link, at] : {std::pair<std::string, Vector3>{"body", kPoint}, {"beam", {0.75, 0, 0}}}) {
@@ -43,13 +42,14 @@ TEST_P(Wrenches, ActAsLoadsOfTheScene) {
       }
       const double work = expected.energies().work;
       EXPECT_GT(std::abs(work), 1e-3);
-      // Newton's tolerance in the work of each step, and round-off of another order of terms.
+      // Tolerance: Newton's tolerance in the work of each step, and round-off of a different order of summation.
       EXPECT_NEAR(simulation.energies().work, work, 1e-6 * std::abs(work)) << link << follows;
       EXPECT_LT((simulation.tip_pose(2).position - expected.tip_pose(2).position).norm(), 1e-7) << link << follows;
     }
 }
 
-// Several on one link add up; the last call counts; without any the motion is as it was.
+// Wrenches on one link add up, each call replaces the wrenches of the last one, and without any the motion is the
+// original one.
 TEST_P(Wrenches, AddUpAndGo) {
   SimulationOptions options;
   options.scheme = GetParam();
@@ -72,8 +72,9 @@ TEST_P(Wrenches, AddUpAndGo) {
 
 INSTANTIATE_TEST_SUITE_P(Schemes, Wrenches, ::testing::Values("em", "em0", "std", "edmc2", "m1"));
 
-// Newmark's family remembers the acceleration at the beginning of a step, in which a wrench that comes then is not, as
-// with any load that jumps: an error of first order, in rates 1 - gamma times what the wrench does in a step.
+// The Newmark family keeps the acceleration at the beginning of a step. It does not contain a wrench that begins there,
+// as with any load that jumps. This is an error of first order: in rates, 1 - gamma times the effect of the wrench over
+// a step.
 TEST(AppliedWrenches, JumpInNewmarksFamily) {
   for (const char* scheme : {"newmark", "hht2"}) {
     const auto error = [&](int steps) {
@@ -92,7 +93,7 @@ TEST(AppliedWrenches, JumpInNewmarksFamily) {
   }
 }
 
-// They are part of the state: a run goes on with them, a reset forgets them.
+// Wrenches are part of the state: a restored run continues with them, and a reset removes them.
 TEST(AppliedWrenches, AreKeptInTheState) {
   const std::string path = ::testing::TempDir() + "flexarm_wrenches_test.state";
   SimulationOptions options;

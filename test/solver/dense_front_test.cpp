@@ -1,4 +1,4 @@
-// Dense fronts with borders against the inverse of a whole matrix.
+// Tests dense fronts (elimination with a border) against Schur complements and factors of the whole matrix.
 #include "solver/dense_front.h"
 
 #include <limits>
@@ -13,7 +13,8 @@ namespace {
 
 using test::RandomSource;
 
-constexpr double kRoundOff = 1e-12;  // some hundred operations on numbers of order one, condition some hundred
+// Some hundred operations on numbers of order one; the condition number is some hundred
+constexpr double kRoundOff = 1e-12;
 
 Eigen::MatrixXd random_matrix(int size, RandomSource& random) {
   Eigen::MatrixXd matrix(size, size);
@@ -22,7 +23,7 @@ Eigen::MatrixXd random_matrix(int size, RandomSource& random) {
   return matrix;
 }
 
-/// A front of the scalars 0 ... size - 1.
+/// Returns a front of the unknowns 0 ... size - 1.
 DenseFront front_of(const Eigen::MatrixXd& matrix) {
   const int size = static_cast<int>(matrix.rows());
   DenseFront front(size);
@@ -36,7 +37,7 @@ DenseFront front_of(const Eigen::MatrixXd& matrix) {
   return front;
 }
 
-/// What remains after `pivots` is the Schur complement of the rows and columns that were taken.
+/// Checks that the rest after `pivots` is the Schur complement of the eliminated rows and columns.
 void expect_schur_complement(const Eigen::MatrixXd& matrix, DenseFront& front, int pivots) {
   const int size = front.size();
   if (pivots == size) return;
@@ -53,7 +54,7 @@ void expect_schur_complement(const Eigen::MatrixXd& matrix, DenseFront& front, i
       EXPECT_NEAR(front.row(pivots + i)[pivots + k], expected(i, k), kRoundOff * (1 + expected.norm()));
 }
 
-/// L and the first rows of U make the matrix' first columns and rows.
+/// Checks that L times the first rows of U gives the first columns and rows of the matrix.
 void expect_factors(const Eigen::MatrixXd& matrix, DenseFront& front, int pivots) {
   const int size = front.size();
   Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(size, pivots), upper = Eigen::MatrixXd::Zero(pivots, size);
@@ -71,7 +72,8 @@ void expect_factors(const Eigen::MatrixXd& matrix, DenseFront& front, int pivots
     }
 }
 
-// Rows of the border come in fours and what is left of them, and those that are certain lose all their pivots at once.
+// Rows of the border are handled in fours plus a remainder. Certain unknowns (see eliminate()) are eliminated together,
+// in one block.
 TEST(DenseFront, LeavesTheSchurComplementAndItsFactors) {
   RandomSource random(1);
   for (const int size : {1, 4, 7, 18, 30, 41, 43}) {
@@ -86,7 +88,7 @@ TEST(DenseFront, LeavesTheSchurComplementAndItsFactors) {
   }
 }
 
-// Each group looks for pivots in its own rows; those of the others lose them all at once.
+// Each group searches for pivots in its own rows. Rows of other groups are updated in one block.
 TEST(DenseFront, GroupsGoOneAfterTheOther) {
   RandomSource random(5);
   for (const int size : {19, 30, 43}) {
@@ -103,7 +105,8 @@ TEST(DenseFront, GroupsGoOneAfterTheOther) {
   }
 }
 
-// A multiplier has a zero on its diagonal: a coordinate's row or column serves, and what finds none is passed on.
+// A multiplier has a zero on the diagonal. The row or column of a coordinate can serve as pivot; multipliers without a
+// pivot are passed on.
 TEST(DenseFront, MultipliersFindPivotsOrWait) {
   RandomSource random(2);
   Eigen::MatrixXd matrix = random_matrix(9, random);
@@ -117,7 +120,7 @@ TEST(DenseFront, MultipliersFindPivotsOrWait) {
   EXPECT_EQ(front_of(matrix).eliminate(9, {0}, true), 9);
 }
 
-// Beside what it couples to, which is not complete, a pivot of 1e-9 would cost nine digits.
+// The couplings of this unknown are not complete yet. With a pivot of 1e-9 now, nine digits would be lost.
 TEST(DenseFront, SmallPivotsWait) {
   RandomSource random(3);
   Eigen::MatrixXd matrix = random_matrix(6, random);

@@ -1,4 +1,4 @@
-// Elimination of an element's outboard nodes against a dense solution of the whole element.
+// Tests the elimination of an element's outer nodes against a dense solution of the whole element.
 #include "solver/element_front.h"
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace flexarm {
 namespace {
 
-/// Numbers of nodes, and of unknowns of each, as a type.
+/// Numbers of nodes and of unknowns per node, as a type.
 template <int N, int U>
 struct Size {
   static constexpr int nodes = N, unknowns = U;
@@ -25,7 +25,8 @@ using Sizes =
     ::testing::Types<Size<2, 6>, Size<3, 6>, Size<4, 6>, Size<5, 6>, Size<2, 3>, Size<3, 3>, Size<4, 3>, Size<5, 3>>;
 TYPED_TEST_SUITE(ElementFrontOf, Sizes);
 
-/// An element's tangent and the diagonal blocks of its nodes, as a front wants them, and their sum as one matrix.
+/// An element's tangent and the diagonal blocks of its nodes, as separate parts for a front, and their sum as one
+/// matrix.
 template <int Nodes, int U>
 struct Front {
   using Element = ElementFront<Nodes, U>;
@@ -40,7 +41,7 @@ struct Front {
   BlockMap diagonal(int node) { return BlockMap(diagonals[node].data()); }
   BlockMap block(int i, int j) { return BlockMap(blocks.data() + Element::kBlock * (i * Nodes + j)); }
 
-  /// Random numbers, which want pivots off the diagonal.
+  /// Fills the matrix with random numbers, so that pivots off the diagonal are needed.
   explicit Front(unsigned seed) {
     test::RandomSource random(seed);
     for (int i = 0; i < Nodes; ++i) {
@@ -53,7 +54,7 @@ struct Front {
         matrix.block<U, U>(U * i, U * j) += block(i, j);
       }
   }
-  /// Of a whole, of which half of what is on the diagonal comes from elsewhere.
+  /// Splits a given matrix: half of the diagonal blocks comes from other sources than the element.
   explicit Front(const Eigen::MatrixXd& whole) : matrix(whole) {
     for (int i = 0; i < Nodes; ++i) {
       diagonal(i) = 0.5 * whole.block<U, U>(U * i, U * i);
@@ -73,8 +74,8 @@ struct Front {
   }
 };
 
-/// Almost symmetric and positive definite, with eigenvalues from 1 to some 1e6, and then in other units: each unknown
-/// is measured in a hundredth to a hundred times of its own.
+/// Returns a matrix that is almost symmetric and positive definite, with eigenvalues from 1 to some 1e6, in changed
+/// units: each unknown is scaled by a factor between a hundredth and a hundred.
 Eigen::MatrixXd stiff_matrix(int size, unsigned seed) {
   test::RandomSource random(seed);
   Eigen::MatrixXd root(size, size), turned(size, size);
@@ -101,7 +102,7 @@ TYPED_TEST(ElementFrontOf, SolvesWithTheSchurComplement) {
     const Eigen::MatrixXd &a = front.matrix, outer = a.bottomRightCorner(kOuter, kOuter);
     const Eigen::MatrixXd expected = a.topLeftCorner(U, U) - own -
                                      a.topRightCorner(U, kOuter) * test::solution(outer, a.bottomLeftCorner(kOuter, U));
-    // Random matrices are no better conditioned than this says.
+    // The condition number of random matrices is at most this.
     const double condition = outer.norm() * test::solution(outer, Eigen::MatrixXd::Identity(kOuter, kOuter)).norm();
     const double round_off = 1e2 * condition * std::numeric_limits<double>::epsilon();
     EXPECT_LE((front.diagonal(0) - expected).norm(), round_off * expected.norm());
@@ -115,7 +116,7 @@ TYPED_TEST(ElementFrontOf, SolvesWithTheSchurComplement) {
     Element::backward(front.blocks.data(), r.data());
     EXPECT_LE((a * x - b).norm(), round_off * (a.norm() * x.norm() + b.norm()));
 
-    Front<kNodes, U> at_once(seed);  // with the right-hand side on the way
+    Front<kNodes, U> at_once(seed);  // with the right-hand side in the same pass
     Eigen::VectorXd y = b;
     for (int i = 0; i < kNodes; ++i) r[i] = y.data() + U * i;
     ASSERT_TRUE(at_once.eliminate(r.data()));
@@ -125,7 +126,7 @@ TYPED_TEST(ElementFrontOf, SolvesWithTheSchurComplement) {
   }
 }
 
-// Row by row no worse than what rounding each entry of the row would do, times the number of operations.
+// The error in each row is at most the effect of rounding each entry of the row, times the number of operations.
 TYPED_TEST(ElementFrontOf, SolvesOnTheDiagonalWithARightHandSideOnTheWay) {
   constexpr int kNodes = TypeParam::nodes, U = TypeParam::unknowns;
   using Element = ElementFront<kNodes, U>;
@@ -140,7 +141,7 @@ TYPED_TEST(ElementFrontOf, SolvesOnTheDiagonalWithARightHandSideOnTheWay) {
     ASSERT_TRUE(front.eliminate(r.data()));
     EXPECT_TRUE(front.has_diagonal_pivots());
 
-    Eigen::VectorXd later = b;  // by the factors that were made
+    Eigen::VectorXd later = b;  // with the factors computed before
     for (int i = 0; i < kNodes; ++i) r[i] = later.data() + U * i;
     Element::forward(front.blocks.data(), front.rows.data(), r.data());
     for (Eigen::VectorXd* solved : {&x, &later}) {
@@ -157,7 +158,7 @@ TYPED_TEST(ElementFrontOf, SolvesOnTheDiagonalWithARightHandSideOnTheWay) {
 TYPED_TEST(ElementFrontOf, RefusesWhatHasNoPivot) {
   constexpr int kNodes = TypeParam::nodes, U = TypeParam::unknowns;
   Front<kNodes, U> singular(1);
-  for (int j = 0; j < kNodes; ++j) {  // a row without entries
+  for (int j = 0; j < kNodes; ++j) {  // a row of zeros
     singular.block(1, j).row(2).setZero();
     singular.diagonal(j).row(2).setZero();
   }

@@ -1,4 +1,4 @@
-// Elements whose interior nodes are eliminated side by side, against the matrix of the whole.
+// Tests elements whose interior nodes are eliminated in parallel (in packs) against the matrix of the whole structure.
 #include "solver/interior_condensation.h"
 
 #include <limits>
@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kElements = 6;  // a pack, and half a pack
+constexpr int kElements = 6;  // a pack and half a pack
 
 Model cantilever(int order) {
   const std::string text = fmt::format(
@@ -28,7 +28,8 @@ Model cantilever(int order) {
   return build_model(*scene::read_scene_text(text, "cantilever.urdf").scene);
 }
 
-/// A tangent of random numbers, of which half of what is on the diagonal comes from elsewhere; and its matrix.
+/// A tangent of random numbers, in which half of the diagonal blocks comes from other sources than elements, and its
+/// matrix.
 template <int Nodes>
 class RandomTangent {
  public:
@@ -36,7 +37,7 @@ class RandomTangent {
     tangent_.condense_interiors();
   }
 
-  /// Almost symmetric and positive definite, but for one element.
+  /// Fills in a matrix that is almost symmetric and positive definite, except for one element.
   void fill(int element_without_pivots, unsigned seed) {
     test::RandomSource random(seed);
     tangent_.set_zero();
@@ -56,7 +57,7 @@ class RandomTangent {
     }
   }
 
-  /// Of solutions with new and with kept factors, beside round-off.
+  /// Checks solutions with new and with kept factors, to within round-off.
   void expect_solutions() {
     const int size = dof_.unknowns, held = 6;  // the clamped node is the first one
     const Eigen::MatrixXd a = matrix_.bottomRightCorner(size, size);
@@ -71,7 +72,7 @@ class RandomTangent {
     }
   }
 
-  /// Numbers of elements that are condensed.
+  /// Returns the number of elements that are condensed.
   int condensed() {
     int count = 0;
     TreeBlocks blocks(model_, dof_);
@@ -80,7 +81,7 @@ class RandomTangent {
     return count;
   }
 
-  /// With something between an element's ends that is not a number.
+  /// Factorises with one bad number in a block between the ends of an element.
   bool factorises_with(double number, int lane) {
     tangent_.condensation()->template system<Nodes>(0).tangent[1][0](2, 3).set(lane, number);
     return tangent_.factorise();
@@ -123,7 +124,8 @@ TYPED_TEST(InteriorCondensationOf, SolvesWithTheMatrixOfTheWhole) {
   }
 }
 
-// With the rest of their packs; one after the other, so that what was left whole is condensed again.
+// Such an element and the others in its pack are left whole. The elements are tried one after the other, so that a pack
+// that was left whole is condensed again.
 TYPED_TEST(InteriorCondensationOf, LeavesElementsWholeThatWantASearchForPivots) {
   RandomTangent<TypeParam::value> tangent;
   for (int element = 0; element < kElements; ++element) {

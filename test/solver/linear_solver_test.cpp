@@ -1,4 +1,4 @@
-// Sparse LU.
+// Tests the solver for sparse matrices (LU).
 #include "solver/linear_solver.h"
 
 #include <limits>
@@ -23,7 +23,7 @@ struct Compressed {
   }
 };
 
-/// Banded, unsymmetric, well-conditioned.
+/// Returns a banded, unsymmetric, well-conditioned matrix.
 Eigen::MatrixXd banded(int size, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -73,7 +73,7 @@ TEST(LinearSolver, RefactorisationEqualsAFreshOne) {
   }
 }
 
-// Pivots that were good for the first values and are all but zero for the second.
+// The pivots of the first values are almost zero in the second values.
 TEST(LinearSolver, ChoosesNewPivotsWhenTheOldOnesFail) {
   Eigen::MatrixXd good(3, 3), bad(3, 3);
   good << 4, 1, 0.5, 1, 5, 0.5, 0.5, 1, 6;
@@ -112,7 +112,7 @@ TEST(LinearSolver, DetectsASingularMatrixAndRecovers) {
   EXPECT_FALSE(solver.factorise(singular));
   EXPECT_FALSE(solver.factorise(zero));
   ASSERT_TRUE(solver.factorise(compressed.values));
-  EXPECT_FALSE(solver.factorise(singular));  // also where factors are there already
+  EXPECT_FALSE(solver.factorise(singular));  // also if factors exist already
   ASSERT_TRUE(solver.factorise(compressed.values));
   Eigen::VectorXd x = Eigen::Vector2d(5, 4);
   ASSERT_TRUE(solver.solve(x));

@@ -1,3 +1,5 @@
+/// Tests the order in which the tree of a mechanism is eliminated, and which unknowns are carried along to other fronts
+/// ("riders").
 #include "solver/tree_order.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-/// A table on so many rigid legs, each hinged to the ground and to the table.
+/// Returns a table on `legs` rigid legs. Each leg is hinged to the ground and to the table.
 std::string table_on(int legs) {
   const std::string inertial =
       R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
@@ -41,7 +43,8 @@ int riders_in_all(int legs) {
   return riders;
 }
 
-// The legs are leaves, which nothing rides over; what their multipliers couple comes to the table and its own leg.
+// The legs are leaves, so no other unknowns pass through them. The multipliers of a leg couple only the table and this
+// leg, so the number of riders grows linearly with the number of legs.
 TEST(TreeOrder, VariablesRideOnlyWhereTheyPass) {
   const int four = riders_in_all(4), eight = riders_in_all(8), sixteen = riders_in_all(16);
   EXPECT_GT(eight, four);
@@ -56,7 +59,8 @@ constexpr const char* kSlider = R"(<robot name="slider"><link name="world"/>
   <joint name="clamp" type="fixed"><parent link="world"/><child link="rail"/></joint>
   <joint name="slide" type="floating"><parent link="rail"/><child link="rider"/><slide start="0.5"/></joint></robot>)";
 
-// A slider's front takes the elements of its window in, whole, and leaves no more than the block of a node.
+// The front of a slider contains all elements of the slider's window as a whole. It passes on no more than the block of
+// one node.
 TEST(TreeOrder, TheWindowOfASliderIsOneFront) {
   const scene::ReadResult read = scene::read_scene_text(kSlider, "slider.urdf");
   ASSERT_TRUE(read.scene);

@@ -1,14 +1,15 @@
 #pragma once
-/// How often a program allocates memory, and what it does where there is none. One of its files may include this.
+/// Counts memory allocations of a program, and lets allocations fail. Only one file of a program may include this
+/// header.
 
 #include <atomic>
 #include <cstdlib>
 
-// Interposes the allocator of the whole program, libraries included; it only counts, glibc does the work.
+// Replaces the allocator of the whole program, including libraries. It only counts; glibc allocates the memory.
 namespace {
 std::atomic<bool> g_counting{false};
 std::atomic<long> g_allocations{0};
-std::atomic<long> g_allowed{-1};  // malloc()'s, before one comes back with nothing; negative: all
+std::atomic<long> g_allowed{-1};  // calls of malloc() before one fails; negative: none fails
 [[maybe_unused]] void count() {
   if (g_counting.load(std::memory_order_relaxed)) g_allocations.fetch_add(1, std::memory_order_relaxed);
 }
@@ -17,8 +18,8 @@ std::atomic<long> g_allowed{-1};  // malloc()'s, before one comes back with noth
 }
 }  // namespace
 
-// Sanitizers have an allocator of their own, without which they see nothing.
-#ifndef __has_feature  // clang's way to say what it was told; GCC has macros
+// Sanitizers have an allocator of their own, which must not be replaced.
+#ifndef __has_feature  // defined by clang alone; GCC defines macros
 #define __has_feature(feature) 0
 #endif
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
@@ -61,10 +62,10 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
 
 namespace flexarm::test {
 
-/// False with sanitizers, and with other C libraries.
+/// False with sanitizers, and with other C libraries than glibc.
 constexpr bool kCountsAllocations = FLEXARM_COUNTS_ALLOCATIONS;
 
-/// In all threads.
+/// Returns the number of allocations in all threads while `function` runs.
 template <class Function>
 long allocations_in(const Function& function) {
   g_allocations = 0;
@@ -74,7 +75,7 @@ long allocations_in(const Function& function) {
   return g_allocations;
 }
 
-/// Runs `function`, for which one allocation fails, that after so many. @returns whether it came to that one
+/// Runs `function`, and lets the allocation after `number` allocations fail. @returns whether that one was reached
 template <class Function>
 bool without_allocation(long number, const Function& function) {
   struct Limit {

@@ -1,11 +1,12 @@
 #pragma once
-/// A free-flying ring of rigid bodies.
+/// A free-flying ring of rigid bodies, for tests of loops.
 
 #include "support/loops.h"
 
 namespace flexarm::test {
 
-/// A floating trunk, two arms of two bodies in spherical and revolute joints, and a joint between their ends.
+/// Returns a floating trunk with two arms of two bodies in spherical and revolute joints, and a joint between the ends
+/// of the arms.
 inline SceneBuilder free_ring(scene::JointKind kind) {
   SceneBuilder b;
   b.body("trunk", 1, {0.1, 0, 0.05}, Vector3(0.05, 0.06, 0.07).asDiagonal());

@@ -1,3 +1,4 @@
+/// Solutions of dense systems; see dense_solution.h.
 #include "support/dense_solution.h"
 
 #include <Eigen/LU>

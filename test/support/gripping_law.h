@@ -1,11 +1,11 @@
 #pragma once
-/// A law of contact points for tests of what they do over a step.
+/// A contact law with friction, for tests of contact points over a step.
 
 #include "contact/contact_law.h"
 
 namespace flexarm::test {
 
-/// `depth`: in m.
+/// Returns a law of contact. `depth` is in m.
 inline ContactLaw gripping_law(double friction, double restitution, double depth) {
   ContactLaw law;
   law.stiffness = 500;

@@ -1,5 +1,5 @@
 #pragma once
-/// Joints that close loops.
+/// Adds joints that close loops to scenes.
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace flexarm::test {
 
-/// Lets a loop joint hold `point` of the child (undeformed link frame) where it is at the start. `axis`: in the
+/// Adds a loop joint that holds `point` of the child (undeformed link frame) at its initial place. `axis` is in the
 /// parent's frame.
 inline scene::JointDescription& close_loop(SceneBuilder& builder, const std::string& name, scene::JointKind kind,
                                            const std::string& parent, const std::string& child,

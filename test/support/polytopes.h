@@ -1,11 +1,11 @@
 #pragma once
-/// Convex bodies made by hand.
+/// Convex bodies, built by hand for tests.
 
 #include "contact/polytope.h"
 
 namespace flexarm::test {
 
-/// A body from its corners and the corners of its faces, counterclockwise as seen from outside.
+/// Returns a body with these corners and faces. The corners of a face are counterclockwise as seen from outside.
 inline Polytope polytope_of(std::vector<Vector3> corners, std::vector<std::vector<int>> faces) {
   Polytope out;
   for (std::vector<int>& face : faces) {
@@ -17,7 +17,7 @@ inline Polytope polytope_of(std::vector<Vector3> corners, std::vector<std::vecto
   return out;
 }
 
-/// Corners as the bits of their numbers say: 1 of +x, 2 of +y, 4 of +z.
+/// Returns a box. The bits of a corner's index tell its signs: 1 for +x, 2 for +y, 4 for +z.
 inline Polytope box_polytope(const Vector3& half) {
   std::vector<Vector3> corners;
   for (int k = 0; k < 8; ++k)
@@ -26,7 +26,8 @@ inline Polytope box_polytope(const Vector3& half) {
                      {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}});
 }
 
-/// A flat roof along y: two slopes that rise by `rise` over `half.x()` from the height half.z() on, above a box.
+/// Returns a body with a flat roof, whose ridge is along y. Its two slopes start at the height half.z() and rise by
+/// `rise` over half.x(), above a box.
 inline Polytope roof_polytope(const Vector3& half, double rise) {
   std::vector<Vector3> corners = box_polytope(half).corners;
   corners.emplace_back(0, -half.y(), half.z() + rise);

@@ -1,5 +1,5 @@
 #pragma once
-/// All schemes with all their options, for tests that hold for each.
+/// All schemes with all their options, for tests that must hold for each of them.
 
 #include <ostream>
 #include <string>
@@ -17,8 +17,8 @@ struct SchemeVariant {
   friend std::ostream& operator<<(std::ostream& out, const SchemeVariant& variant) { return out << variant.name; }
 };
 
-/// Every scheme of the table with default options, then with each interpolation and weak form that it takes.
-/// `step`: of numerical dissipation [s].
+/// Returns every scheme of the table with default options, and with each interpolation and weak form that it accepts.
+/// `step`: step size for numerical dissipation [s].
 inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
   std::vector<SchemeVariant> variants;
   const auto add = [&](const std::string& name, const IntegratorDescription& integrator) {
@@ -42,7 +42,7 @@ inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
   return variants;
 }
 
-/// Those whose scheme is as the predicate says.
+/// Returns the variants whose scheme satisfies the predicate.
 template <class Predicate>
 std::vector<SchemeVariant> scheme_variants_where(const Predicate& suits) {
   std::vector<SchemeVariant> variants;

@@ -1,8 +1,10 @@
+/// The path of the repository; see source_path.h.
 #include "support/source_path.h"
 
 namespace flexarm::test {
 
-// The one file that knows where the repository lies: all others compile alike in every checkout.
+// This is the only file that contains the path of the repository, so that other files compile to the same code in every
+// checkout.
 std::string source_path(const std::string& path) {
   return FLEXARM_SOURCE_DIR "/" + path;
 }

@@ -1,11 +1,11 @@
 #pragma once
-/// Files of the repository that tests read.
+/// Paths of files in the repository that tests read.
 
 #include <string>
 
 namespace flexarm::test {
 
-/// The absolute path of a file or folder, given from the repository's root.
+/// Returns the absolute path of a file or folder, given relative to the root of the repository.
 std::string source_path(const std::string& path);
 
 }  // namespace flexarm::test

@@ -1,5 +1,6 @@
 #pragma once
-/// A kind of force element that only tests know: what a new kind needs, from its line in the scene to its columns.
+/// A kind of force element that exists only in tests. It shows what a new kind needs, from its line in the scene to its
+/// columns of results.
 
 #include "elements/line_element.h"
 #include "flexarm/scene/force_element.h"
@@ -8,8 +9,8 @@
 
 namespace flexarm::test {
 
-/// Between two points: a damper with the tension linear v + cubic v^3 of the rate v at which they move apart, and a
-/// constant push from outside. It counts what it has dissipated.
+/// A strut between two points: a damper with the tension linear v + cubic v^3, where v is the rate at which the points
+/// move apart, and a constant push from outside. It sums up the energy that it dissipates.
 struct StrutLaw {
   double linear = 0;  ///< [N s/m]
   double cubic = 0;   ///< [N s^3/m^3]
@@ -53,7 +54,7 @@ class Strut : public LineElement {
   StrutLaw law_;
 };
 
-/// <strut name="" from="" from_at="" to="" to_at="" linear="" cubic="" push=""/>
+/// Reads <strut name="" from="" from_at="" to="" to_at="" linear="" cubic="" push=""/>.
 class StrutDescription : public scene::ForceElementDescription {
  public:
   std::string from, to;
@@ -63,9 +64,8 @@ class StrutDescription : public scene::ForceElementDescription {
   const char* kind() const override { return "strut"; }
   std::vector<scene::LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override { return {law.linear, law.cubic, law.push}; }
-  std::shared_ptr<const ForceElement> place(const std::vector<NodePoint>& places,
-                                            const std::vector<Vector3>&) const override {
-    return std::make_shared<Strut>(name, places[0], places[1], law);
+  std::shared_ptr<const ForceElement> place(const scene::ForcePlacement& placement) const override {
+    return std::make_shared<Strut>(name, placement.places[0], placement.places[1], law);
   }
 };
 
@@ -84,7 +84,7 @@ inline std::shared_ptr<const scene::ForceElementDescription> read_strut(const sc
   return out;
 }
 
-/// For ReadOptions::more_force_elements.
+/// The list for ReadOptions::more_force_elements.
 inline const std::vector<scene::ForceElementKind>& strut_kind() {
   static const std::vector<scene::ForceElementKind> kinds = {{"strut", "", read_strut}};
   return kinds;

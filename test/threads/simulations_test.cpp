@@ -1,4 +1,5 @@
-// Built with the thread sanitizer, which ends the program with an error where threads share what one of them changes.
+// Tests simulations in several threads. The program is built with the thread sanitizer, which ends it with an error if
+// threads have a data race.
 #include <array>
 #include <thread>
 
@@ -11,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-/// Where the coordinates of a scene are after some steps.
+/// Returns the positions of a scene's coordinates after some steps.
 std::vector<double> positions_after_steps(const scene::SceneDescription& scene) {
   Simulation simulation(scene);
   for (int n = 0; n < 3; ++n) EXPECT_TRUE(simulation.step().converged);
@@ -20,8 +21,8 @@ std::vector<double> positions_after_steps(const scene::SceneDescription& scene) 
   return positions;
 }
 
-// Built and stepped at the same time, from one description: beams in packs, a closed loop, a slider, joints of each
-// kind.
+// Simulations are built and run at the same time, from one description. The scenes have beams in packs, a closed loop,
+// a slider and joints of each kind.
 TEST(Simulations, RunEachInAThreadOfItsOwn) {
   for (const char* name : {"flexible_two_link_arm", "four_bar", "sliding_arm", "joints"}) {
     const scene::ReadResult read =

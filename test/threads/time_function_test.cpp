@@ -1,4 +1,5 @@
-// Built with the thread sanitizer, which ends the program with an error where threads share what one of them changes.
+// Tests functions of time in several threads. The program is built with the thread sanitizer, which ends it with an
+// error if threads have a data race.
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ double sum_of(const TimeFunction& function) {
   return sum;
 }
 
-/// Runs work(0) and work(1) in two threads; both must come to the same sum.
+/// Runs work(0) and work(1) in two threads. Both must return the same sum.
 template <class Work>
 void run_twice(const Work& work) {
   double sums[2] = {0, 0};
@@ -27,7 +28,8 @@ void run_twice(const Work& work) {
   EXPECT_NE(sums[0], 0);
 }
 
-// As two models of one scene have them. They live before and after the threads, so that nothing else orders these.
+// Two models of one scene have such copies. The copies exist before and after the threads, so that their creation does
+// not order the threads.
 TEST(TimeFunction, CopiesMayBeEvaluatedAtTheSameTime) {
   for (const char* text : kTexts) {
     const TimeFunction original = TimeFunction::parse(text), copies[] = {original, original};
@@ -35,7 +37,7 @@ TEST(TimeFunction, CopiesMayBeEvaluatedAtTheSameTime) {
   }
 }
 
-// As two simulations of one scene make them.
+// Two simulations of one scene make such copies.
 TEST(TimeFunction, MayBeCopiedAtTheSameTime) {
   for (const char* text : kTexts) {
     const TimeFunction original = TimeFunction::parse(text);

@@ -1,5 +1,6 @@
 #pragma once
-/// A run that keeps a given error in time. (docs/notes/accuracy.md)
+/// Runs a simulation so that its error of time integration stays below a given bound, by choosing the steps.
+/// (docs/notes/accuracy.md)
 
 #include <limits>
 #include <optional>
@@ -11,71 +12,75 @@
 
 namespace flexarm {
 
+/// What run_to_accuracy() has to achieve, and how the error is measured.
 struct AccuracyRequest {
-  double accuracy;                   ///< motion_error() at most, in (0, 1)
-  double until;                      ///< [s]
-  int intervals = 100;               ///< of equal length, between times at which points are judged
-  std::optional<double> scale = {};  ///< of errors [m]; none: points' way, 1e-6 of the size at least
-  std::string frame = {};            ///< in which points are judged, see JudgedPoints
+  double accuracy;      ///< upper bound of motion_error(), in (0, 1)
+  double until;         ///< end time of the run [s]
+  int intervals = 100;  ///< number of equal intervals; positions are compared at their ends
+  /// Length by which errors are divided [m]. Empty: the largest displacement of a judged point, but at least 1e-6 of
+  /// the size of the mechanism.
+  std::optional<double> scale = {};
+  std::string frame = {};  ///< link in whose frame positions are compared, see JudgedPoints
   int most_tries = 24;
-  double most_steps = 1e8;  ///< of all tries
+  double most_steps = 1e8;  ///< limit for the sum of the steps of all tries
 };
 
 /// Observes the tries of a run; each try begins at the same state.
 class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
-  /// A try of that many steps begins. `estimate`: its expected error, NaN if unknown.
+  /// Called when a try with that many steps begins. `estimate`: its expected error, NaN if unknown.
   virtual void begin(const Simulation&, long /*steps*/, double /*estimate*/) {}
   /// Called before each step; command efforts here.
   virtual void before_step(Simulation&) {}
   /// Called after each step. Return false to end the run.
   virtual bool after_step(const Simulation&, const StepResult&) { return true; }
-  /// An interval has ended. `estimate`: of the present error [m], NaN in the first try.
+  /// Called at the end of each interval. `estimate`: the estimated error at this time [m], NaN in the first try.
   virtual void after_interval(const Simulation&, double /*estimate*/) {}
 };
 
+/// The outcome of run_to_accuracy().
 struct AccurateRun {
   enum class End {
-    Met,
-    Interrupted,
-    Failed,         ///< a step has, see `last`
-    NoConvergence,  ///< shorter steps make the error no smaller: round-off, or chaos
+    Met,            ///< the estimated error is within the requested accuracy
+    Interrupted,    ///< RunWatcher::after_step() returned false
+    Failed,         ///< a step failed, see `last`
+    NoConvergence,  ///< shorter steps do not reduce the error, because of round-off or chaotic motion
     OutOfTries,
     OutOfSteps
   };
   struct Try {
     std::string scheme;
     long steps;
-    double estimate;  ///< of motion_error(); NaN: the first one, or it says nothing
+    double estimate;  ///< estimated motion_error(); NaN for the first try, or if no estimate is possible
   };
 
   End end = End::OutOfTries;
-  double scale = 0;            ///< of errors [m]
-  int steps_per_interval = 0;  ///< of the last try, but for those that end at corners
-  double interval = 0;         ///< [s]
+  double scale = 0;            ///< length by which errors are divided [m]
+  int steps_per_interval = 0;  ///< of the last try, without steps added at events and at kinks of functions of time
+  double interval = 0;         ///< length of an interval [s]
   std::vector<Try> tries;
-  long steps = 0;   ///< of all tries
-  StepResult last;  ///< of the last step
-  JudgedMotion motion;
+  long steps = 0;       ///< sum of the steps of all tries
+  StepResult last;      ///< outcome of the last step
+  JudgedMotion motion;  ///< positions of the judged points in the last try
 
   /// Scheme of the last try; empty if there was none.
   std::string scheme() const { return tries.empty() ? "" : tries.back().scheme; }
-  /// The estimate of the last try.
+  /// Estimated error of the last try; NaN if there was none.
   double estimate() const { return tries.empty() ? std::numeric_limits<double>::quiet_NaN() : tries.back().estimate; }
 };
 
-/// Runs a simulation from its present state, again and again with more steps, until the estimated error is at most the
-/// requested one. Then the simulation is at the end of that run. All steps are equal, except around events
-/// (Simulation::set_step_size). If the scene leaves the scheme to flexarm ("auto"), a try may use another scheme of
-/// higher order if that promises less work; the simulation itself keeps its scheme. A watcher sees the simulation that
-/// runs.
-/// @throws std::invalid_argument if the request is out of range, a frame is unknown, or the intervals cannot be divided
-/// such that servos are sampled at ends of steps.
+/// Repeats a run from the simulation's present state with more and more steps, until the estimated error is at most the
+/// requested one. Afterwards the simulation is at the end of the last run. All steps have the same length, except
+/// around events (Simulation::set_step_size). If the scheme of the scene is "auto", a try may use a scheme of higher
+/// order if that promises less work; the simulation itself keeps its scheme. The watcher gets the simulation that is
+/// running.
+/// @throws std::invalid_argument if the request is out of range, a frame is unknown, or no division of the intervals
+/// places the samples of servos at ends of steps.
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher);
 
 const char* to_string(AccurateRun::End end);
-/// A message about a run that did not keep the requested `accuracy`. `more`: other errors, relative.
+/// A message about a run that did not reach the requested `accuracy`. `more`: other relative errors to be mentioned.
 std::string shortcoming(const AccurateRun& run, double accuracy, double more = 0);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// How far one motion of a scene is from another one: the measure of error of this folder and of the benchmarks.
+/// Measures how far one motion of a scene is from another one. Runs to an accuracy and the benchmarks use this error.
 
 #include <cstddef>
 #include <optional>
@@ -10,18 +10,18 @@
 
 namespace flexarm {
 
-/// Positions of a point at equal intervals, the first at the start [m].
+/// Positions of a point at equal time intervals, beginning at the start [m].
 using Trajectory = std::vector<Vector3>;
 
-/// Largest distance from the start [m].
+/// Largest distance of a point of the trajectory from its first point [m].
 double largest_displacement(const Trajectory& trajectory);
 
 /// Root mean square (over time, trapezoidal rule) of the distance from a reference [m].
-/// @throws std::invalid_argument unless both have the same number of points, two or more.
+/// @throws std::invalid_argument unless both trajectories have the same number of points, two or more.
 double trajectory_distance(const Trajectory& trajectory, const Trajectory& reference);
 
-/// The same relative to the reference's largest displacement.
-/// @throws std::invalid_argument if that is zero, too.
+/// trajectory_distance() divided by the reference's largest displacement.
+/// @throws std::invalid_argument as trajectory_distance(), and if the reference does not move.
 double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
 
 /// The points by whose motion a run is judged: the scene's probes, or the tips of all moving links if it has none.
@@ -32,30 +32,31 @@ class JudgedPoints {
   explicit JudgedPoints(const Simulation& simulation, const std::string& frame = {});
 
   std::size_t size() const { return has_probes_ ? count_ : links_.size(); }
-  /// Their present positions [m]. The second function replaces `positions`.
+  /// The present positions of the points [m]. The second function overwrites `positions`.
   std::vector<Vector3> positions(const Simulation& simulation) const;
   void positions(const Simulation& simulation, std::vector<Vector3>& positions) const;
 
  private:
   bool has_probes_;
-  std::size_t count_;               // of probes
-  std::vector<std::size_t> links_;  // where there are none
+  std::size_t count_;               // number of probes
+  std::vector<std::size_t> links_;  // judged links, if the scene has no probes
   std::optional<std::size_t> frame_;
 };
 
-/// Trajectories of all judged points, with the same times.
+/// Trajectories of all judged points, sampled at the same times.
 struct JudgedMotion {
   std::vector<Trajectory> points;
 
   explicit JudgedMotion(std::size_t count = 0) : points(count) {}
-  /// @throws std::invalid_argument unless there is one for each point.
+  /// Appends one position for each point.
+  /// @throws std::invalid_argument if the number of positions is another one.
   void add(const std::vector<Vector3>& positions);
   /// The largest distance of any point from its start [m].
   double largest_displacement() const;
 };
 
-/// The largest trajectory_distance() of all points, divided by `scale` [m].
-/// @throws std::invalid_argument unless both have the same points and times, and the scale is positive.
+/// The largest trajectory_distance() of any point [m], divided by `scale` [m].
+/// @throws std::invalid_argument unless both motions have the same points and times, and the scale is positive.
 double motion_error(const JudgedMotion& motion, const JudgedMotion& reference, double scale);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// What touches what: <ground>, <contact>, <no_contact> of a scene.
+/// Which links and grounds can touch each other: the elements <ground>, <contact> and <no_contact> of a scene.
 
 #include <optional>
 #include <string>
@@ -9,32 +9,33 @@
 
 namespace flexarm::scene {
 
-/// A half-space fixed in the world: where normal . x < offset.
+/// A half-space fixed in the world, filled where normal . x < offset.
 struct GroundDescription {
   std::string name;
-  Vector3 normal = Vector3::UnitZ();  ///< outwards, unit
+  Vector3 normal = Vector3::UnitZ();  ///< unit vector, pointing out of the ground
   double offset = 0;                  ///< [m]
   SourceLocation location = {};
 };
 
-/// Stands for all links and grounds that are not neighbours.
+/// In a contact pair: all links and grounds. Contacts between neighbours are excluded.
 constexpr const char* kAllBodies = "*";
 
-/// Two sides that touch: a link, a ground, or all. If several name a pair, the one that names more of it counts.
+/// Two partners that can touch: each is a link, a ground or kAllBodies. If several pairs match the same two bodies, the
+/// pair that names more of them explicitly applies.
 struct ContactPair {
   std::string first, second;
   SourceLocation location = {};
 };
 struct ContactDescription : ContactPair {
-  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
-  double restitution = 0.3;              ///< from 0.05 to 1
-  std::optional<double> friction = {};   ///< Coulomb's coefficient; empty: as the links' surfaces have it, else 0
-  /// Moments that resist turning about the normal and across it: at most this length times the normal force of each
-  /// point [m].
+  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: from the moved masses and the step
+  double restitution = 0.3;              ///< coefficient, from 0.05 to 1
+  std::optional<double> friction = {};   ///< Coulomb coefficient; empty: from the surfaces of the links, else 0
+  /// Torsional and rolling friction: the resisting moment about the normal, and across it, is at most this length times
+  /// the normal force of each point [m].
   double spinning = 0, rolling = 0;
 };
 
-/// What a <gazebo> element says of the surface of a link.
+/// Surface properties of a link from its <gazebo> element.
 struct SurfaceHints {
   std::optional<double> friction;   ///< the smaller one of mu1 and mu2
   std::optional<double> stiffness;  ///< kp [N/m]

@@ -1,5 +1,5 @@
 #pragma once
-/// Errors and warnings about an input, as data.
+/// Errors and warnings about an input file, as data.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,9 @@ struct Diagnostic {
   enum class Severity { Warning, Error };
   Severity severity = Severity::Error;
   std::string file;
-  int line = 0;          ///< 1-based; 0 where no line is known
+  int line = 0;          ///< 1-based; 0 if unknown
   std::string element;   ///< "<circle> of beam 'forearm'"
-  std::string got;       ///< "'-0.01'", with its quotes; empty where something is missing
+  std::string got;       ///< what was read, quoted: "'-0.01'"; empty if something is missing
   std::string expected;  ///< "radius must be > 0"
 
   /// `scene.urdf:41: <circle> of beam 'forearm': radius must be > 0, got '-0.01'`
@@ -22,9 +22,9 @@ struct Diagnostic {
 
 using Diagnostics = std::vector<Diagnostic>;
 
-/// Whether any of them is an error.
+/// Whether at least one diagnostic is an error.
 bool has_errors(const Diagnostics& diagnostics);
-/// One per line.
+/// All diagnostics as text, one per line.
 std::string to_text(const Diagnostics& diagnostics);
 
 }  // namespace flexarm::scene

@@ -1,43 +1,55 @@
 #pragma once
-/// Elements of a scene that act between points of links: the base of all kinds.
+/// Base class of the elements of a scene that act between points of links, such as springs.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "flexarm/math/pose.h"
+#include "flexarm/math/time_function.h"
 #include "flexarm/scene/source_location.h"
 
 namespace flexarm {
 
 class ForceElement;
 struct NodePoint;
+struct NodePose;
 
 namespace scene {
 
-/// A point of a link, as an attribute of the scene's element names it.
+/// A point of a link, as given by an attribute of an XML element.
 struct LinkPoint {
-  std::string attribute;         ///< for messages: "from"
-  std::string link;              ///< empty: wrong in the file
+  std::string attribute;         ///< name of the attribute, for messages: "from"
+  std::string link;              ///< empty if the file has an error there
   Vector3 at = Vector3::Zero();  ///< in the undeformed link frame [m]
 };
 
-/// An element of the scene that acts between points of links. Constant once it is part of a scene: copies share it.
+/// Where the points of an element are in the model.
+struct ForcePlacement {
+  std::vector<NodePoint> places;                 ///< per point: node and offset
+  std::vector<Vector3> positions;                ///< per point: initial position in the world [m]
+  std::vector<int> functions = {};               ///< indices of functions() in the model
+  const std::vector<NodePose>* nodes = nullptr;  ///< initial poses of all nodes
+  Vector3 origin = Vector3::Zero();              ///< of positions, in the world [m]
+};
+
+/// An XML element of the scene that acts between points of links. Copies of a scene share it, so it must not change
+/// once it is part of a scene.
 class ForceElementDescription {
  public:
   virtual ~ForceElementDescription() = default;
 
-  /// The name of its element: "spring".
+  /// The name of the XML element: "spring".
   virtual const char* kind() const = 0;
   virtual std::vector<LinkPoint> points() const = 0;
-  /// All its numbers except those of its points: two elements with the same numbers do the same.
+  /// Functions of time that the element uses.
+  virtual std::vector<TimeFunction> functions() const { return {}; }
+  /// All parameters except points and functions. Two elements of one kind with the same numbers behave alike.
   virtual std::vector<double> numbers() const = 0;
-  /// Makes the element of the mechanism. `places`: of its points; `positions`: of its points at the start, in the world
-  /// [m].
-  virtual std::shared_ptr<const ForceElement> place(const std::vector<NodePoint>& places,
-                                                    const std::vector<Vector3>& positions) const = 0;
+  /// Creates the force element of the model.
+  virtual std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const = 0;
 
-  std::string name;  ///< of its columns; empty: it has none
+  std::string name;  ///< used in the names of result columns; empty: no columns
   SourceLocation location = {};
 };
 

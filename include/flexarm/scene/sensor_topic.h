@@ -1,11 +1,11 @@
 #pragma once
-/// The topics of sensors.
+/// ROS topics of sensors.
 
 #include <string>
 
 namespace flexarm::scene {
 
-/// The topic of the sensor with that name, "sensors/NAME". Characters other than letters, digits and _ become _.
+/// Returns the topic "sensors/NAME" of the sensor with that name. Characters other than letters, digits and _ become _.
 std::string sensor_topic(std::string name);
 
 }  // namespace flexarm::scene

@@ -1,11 +1,11 @@
 #pragma once
-/// A place in a file.
+/// A line of an input file.
 
 #include <string>
 
 namespace flexarm::scene {
 
-/// Kept for errors that are found only when the model is built.
+/// The line where an element of the scene was read. Errors that are found only when the model is built refer to it.
 struct SourceLocation {
   std::string file;
   int line = 0;

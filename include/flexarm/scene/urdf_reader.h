@@ -1,5 +1,5 @@
 #pragma once
-/// Reads a URDF file with flexarm's elements. The only part that uses urdfdom and tinyxml2.
+/// Reads a scene: a URDF file with flexarm's own elements. No other part of the library uses urdfdom and tinyxml2.
 
 #include <map>
 #include <optional>
@@ -10,38 +10,41 @@
 
 namespace flexarm::scene {
 
-/// The scene, if the input has no errors; and all errors and warnings.
+/// The scene, if the input has no errors, with all errors and warnings.
 struct ReadResult {
   std::optional<SceneDescription> scene;
   Diagnostics diagnostics;
-  /// The text of the scene's file. Expressions are replaced by numbers and parameters are left out, so that programs
-  /// that know neither can read it.
+  /// The scene's XML text in which expressions are replaced by numbers and parameters are removed, for programs that
+  /// support neither.
   std::string urdf = {};
 };
 
-/// Values for parameters of a scene, by their names.
+/// Values of the scene's parameters, by name.
 using ParameterValues = std::map<std::string, double>;
 
 struct ForceElementKind;
 
-/// Options that <simulation> has, too (either place is enough), and values of parameters instead of those in the file.
+/// Options for reading. The options with an attribute of <simulation> apply if either the attribute or the option is
+/// set.
 struct ReadOptions {
-  bool clamp_start = false;    ///< start="clamp": joints that would start outside their limits start at the nearest one
+  bool clamp_start = false;    ///< start="clamp": joints whose start is outside their limits start at the nearest limit
   bool lock_massless = false;  ///< massless="lock": see SceneDescription::lock_massless
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
-  /// It is an error if the scene has no <parameter> of a name, or if a value is outside its limits.
+  /// Values that replace those in the file. It is an error if the scene has no such <parameter>, or if a value is
+  /// outside its limits.
   ParameterValues parameters = {};
-  /// For xacro, which read_scene_file() runs for files *.xacro, as "NAME=VALUE NAME=VALUE".
+  /// Arguments for xacro, "NAME=VALUE NAME=VALUE". read_scene_file() runs xacro for files *.xacro.
   std::string xacro_arguments = {};
-  /// More kinds of elements between points of links than those of the format; null: none. For code within the library's
-  /// sources, where kinds are declared (scene/force_element_kinds.h).
+  /// Additional kinds of elements between points of links; null: only those of the format. For code within the
+  /// library's sources, which can declare kinds (scene/force_element_kinds.h).
   const std::vector<ForceElementKind>* more_force_elements = nullptr;
+  bool is_spawned = false;  ///< its root link floats (flexarm/simulation/payloads.h): no warning that it is clamped
 };
 
-/// Reads a file, *.xacro by the program xacro where there is one. Never throws for bad input: every error of the file
-/// is in the diagnostics.
+/// Reads a file. Files *.xacro are expanded by the program xacro, which must be installed. Never throws for bad input:
+/// the diagnostics contain every error of the file.
 ReadResult read_scene_file(const std::string& path, const ReadOptions& options = {});
-/// Reads text (the parameter `robot_description`); `name` stands for the file in diagnostics.
+/// Reads a text, such as the parameter `robot_description`. Diagnostics show `name` as the file.
 ReadResult read_scene_text(const std::string& text, const std::string& name, const ReadOptions& options = {});
 
 }  // namespace flexarm::scene

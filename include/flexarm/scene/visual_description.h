@@ -1,6 +1,8 @@
 #pragma once
 /// Shapes of a link: URDF's <visual> and <collision>.
 
+#include <array>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -8,7 +10,7 @@
 
 namespace flexarm::scene {
 
-/// Shapes for displays and for contact. Cylinders are along z; the middle of each shape is at the origin.
+/// Shapes for display and contact. The origin is in the middle of each shape; the axis of a cylinder is z.
 struct BoxShape {
   Vector3 size = Vector3::Zero();  ///< [m]
 };
@@ -22,9 +24,12 @@ struct MeshShape {
   std::string url;                  ///< package://PACKAGE/PATH or file://PATH
   Vector3 scale = Vector3::Ones();  ///< [m per unit of the file]
 };
+/// Red, green, blue and opacity, from 0 to 1.
+using Color = std::array<double, 4>;
 struct VisualDescription {
   Pose origin;  ///< in the link frame
   std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> shape;
+  std::optional<Color> color = {};  ///< of the <material>
 };
 
 }  // namespace flexarm::scene

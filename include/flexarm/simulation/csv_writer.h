@@ -1,5 +1,5 @@
 #pragma once
-/// Results of a simulation as comma-separated values.
+/// Writes results of a simulation as a file of comma-separated values.
 
 #include <cstdio>
 #include <memory>
@@ -9,17 +9,17 @@
 
 namespace flexarm {
 
-/// A file with a line of the columns' names, then a row for each call. Numbers have 17 significant digits, so that they
-/// are read back bit for bit, in any locale.
+/// Writes a line with the columns' names, then one row per call. Numbers have 17 significant digits and a decimal point
+/// in any locale, so that they can be read back bit for bit.
 class CsvWriter : public ResultWriter {
  public:
   /// Creates the file and writes the header. The path "-" means the standard output.
-  /// @throws std::runtime_error naming the file and the reason if that fails, as the other functions do. The rows
-  ///   written before are then whole.
+  /// @throws std::runtime_error naming the file and the reason if that fails. The other functions do the same; the rows
+  /// written before an error are complete.
   CsvWriter(const std::string& path, ResultColumns columns);
 
   void write_row(const Simulation& simulation) override;
-  /// A remote file system may notice only here that it is full.
+  /// Closes the file. Some errors are reported only here, such as a full remote file system.
   void close() override;
 
  private:
@@ -31,7 +31,7 @@ class CsvWriter : public ResultWriter {
   std::string path_, line_;
   std::unique_ptr<std::FILE, Closer> file_;
   ResultColumns columns_;
-  long written_ = 0;  // bytes of whole rows
+  long written_ = 0;  // bytes of complete rows
 };
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// Smaller linear models with nearly the same response.
+/// Reduces the order of linear models while nearly keeping their response.
 
 #include <Eigen/Core>
 
@@ -7,19 +7,20 @@
 
 namespace flexarm {
 
+/// A linear model of lower order.
 struct ReducedModel {
-  LinearModel model;  ///< of the states "reduced:0", ...; its equations of second order are those of the whole model
-  Eigen::VectorXd hankel_singular_values;  ///< of the part that decays, the largest first
-  int kept = 0;                            ///< states of poles that do not decay, all of which stay
+  LinearModel model;  ///< with the states "reduced:0", ...; mass, damping, stiffness are those of the original model
+  Eigen::VectorXd hankel_singular_values;  ///< of the decaying part, in descending order
+  int kept = 0;                            ///< number of states whose poles do not decay; none of them is removed
 };
 
-/// Balanced truncation (Moore 1981; by square roots: Tombs and Postlethwaite 1987) of the part that decays. Poles that
-/// do not decay, as those of motions that nothing resists, stay as they are. At any frequency no gain from inputs to
-/// outputs changes by more than twice the sum of the Hankel singular values that are left out, which depend on the
-/// units of inputs and outputs. The model has less than `order` states if the others cannot be reached from the inputs,
-/// or not be seen in the outputs.
-/// @throws std::invalid_argument if `order` is larger than the number of states, or smaller than the number of poles
-/// that do not decay, or if the sizes of the model's matrices do not fit.
+/// Reduces the decaying part of a model by balanced truncation (Moore 1981; square-root method of Tombs and
+/// Postlethwaite 1987). Poles that do not decay, such as those of free motions, are kept unchanged. At any frequency,
+/// no gain from inputs to outputs changes by more than twice the sum of the removed Hankel singular values. These
+/// values depend on the units of inputs and outputs. The result has less than `order` states if further states are
+/// uncontrollable or unobservable.
+/// @throws std::invalid_argument if `order` is larger than the number of states or smaller than the number of poles
+/// that do not decay, or if the sizes of the model's matrices do not match.
 ReducedModel reduced(const LinearModel& model, int order);
 
 }  // namespace flexarm

@@ -15,71 +15,72 @@
 
 namespace flexarm {
 
-/// With respect to what a run is differentiated.
+/// Selects the parameters and initial states with respect to which a run is differentiated.
 struct SensitivityRequest {
-  /// Names of <parameter>s of the scene.
+  /// Names of <parameter> elements of the scene.
   std::vector<std::string> parameters;
-  /// Reads the scene of the simulation once more, with another value of one parameter. Required if there are
-  /// parameters.
+  /// Reads the scene of the simulation again, with another value of one parameter. Required if `parameters` is not
+  /// empty.
   std::function<scene::ReadResult(const std::string& parameter, double value)> read;
-  /// The states of linear models about the start (LinearModel::states): joint positions, displacements of beams' nodes,
-  /// then their rates.
+  /// Whether to differentiate with respect to the initial state as well. Its components are those of a linear model
+  /// about the start (LinearModel::states): joint positions, displacements of beam nodes, then their rates.
   bool initial_state = false;
 };
 
-/// Derivatives of a simulation's run, per unit of parameters and of states at the start. The columns of all matrices
-/// are these directions: first the parameters in the order of the request, then the states.
+/// Derivatives of a simulation's run with respect to parameters and initial states. The columns of all matrices, called
+/// directions, are first the parameters in the order of the request, then the initial states.
 ///
-/// They are derivatives of the steps as they are taken, to about 1e-6 of the largest. At stops and dry friction they
-/// are those of the motion, whose events are within steps. The simulation has the same bits as without them. There are
-/// none for iterative interpolation.
+/// The derivatives are those of the discrete time steps, accurate to about 1e-6 of the largest derivative. At stops and
+/// dry friction they are those of the continuous motion, whose events lie within steps. Computing derivatives does not
+/// change any bit of the simulation. Iterative interpolation has no derivatives.
 class Sensitivities {
  public:
-  /// For a simulation at its start. It must outlive this object and stay in its place in memory; its copies have no
-  /// derivatives.
-  /// @throws std::invalid_argument if a parameter is unknown, or changes something without a derivative (numbers of
-  /// elements, joints, the step), or if the simulation has made steps; ModelError if its scheme has no derivatives;
-  /// std::runtime_error for initial states at a dead point.
+  /// Starts with a simulation that has made no steps. The simulation must outlive this object and must not move in
+  /// memory. Copies of the simulation have no derivatives.
+  /// @throws std::invalid_argument if a parameter is unknown, if it changes something that cannot be differentiated
+  /// (numbers of elements, joints, the step), or if the simulation has made steps; ModelError if its scheme has no
+  /// derivatives; std::runtime_error if initial states are requested at a dead point of a loop.
   Sensitivities(Simulation& simulation, const SensitivityRequest& request);
   ~Sensitivities();
   Sensitivities(Sensitivities&&) noexcept;
   Sensitivities& operator=(Sensitivities&&) noexcept;
 
-  /// Steps the simulation (Simulation::step()) with all derivatives.
+  /// Does one step of the simulation (Simulation::step()), with all derivatives.
   /// @throws std::logic_error if the simulation was stepped, reset or restored by other means since the last step.
   StepResult step();
 
-  /// Names of the parameters, then of the states.
+  /// Names of the columns: the parameters, then the initial states.
   const std::vector<std::string>& directions() const;
-  /// Why there are no derivatives any more, so that matrices are NaN: a step failed or was done by another scheme, a
-  /// slider left its line, or stops and friction changed more often in a step than can be followed. Empty if there are
-  /// derivatives.
+  /// Why the derivatives were lost, so that all matrices are NaN: a step failed or was done by another scheme, a slider
+  /// left its line, or there were too many events of stops and friction in one step. Empty if the derivatives are
+  /// valid.
   const std::string& lost() const;
-  /// Events of the run: stops that were touched or left, dry friction that sticks or slips. Derivatives include how the
-  /// time of each event changes. After an event with a doubt they are not to be trusted.
+  /// Events of the run so far: stops that were touched or left, dry friction that sticks or slips. The derivatives
+  /// account for the change of each event's time. After an event with a doubt (RunEvent::doubt) they are unreliable.
   const std::vector<RunEvent>& events() const;
 
-  /// Of joint positions [rad or m] and Simulation::velocity() [rad/s or m/s]: coordinates x directions.
+  /// Derivatives of joint positions [rad or m] and of Simulation::velocity() [rad/s or m/s]: coordinates x directions.
   Eigen::MatrixXd positions() const;
   Eigen::MatrixXd velocities() const;
-  /// Of a probe: {position [m], small rotation [rad], velocity [m/s], angular velocity [rad/s]}, world axes:
-  /// 12 x directions.
+  /// Derivatives of a probe's {position [m], small rotation [rad], velocity [m/s], angular velocity [rad/s]}, world
+  /// axes: 12 x directions.
   /// @throws std::out_of_range if there is no such probe.
   Eigen::MatrixXd probe(std::size_t index) const;
-  /// Of any smooth function of a simulation: numbers of the function x directions.
-  /// @throws std::invalid_argument if the function does not always give the same number of values.
+  /// Derivatives of any smooth function of a simulation: values of the function x directions.
+  /// @throws std::invalid_argument if the number of values differs between calls of the function.
   Eigen::MatrixXd of(const std::function<Eigen::VectorXd(const Simulation&)>& observable) const;
-  /// Of outputs of linear models (LinearRequest::outputs): position: and velocity: of joints and points, acceleration:
-  /// of points, effort: of driven joints. Without names: positions of all joints and probes. Outputs x directions.
+  /// Derivatives of outputs of linear models (LinearRequest::outputs): outputs x directions. Possible outputs are
+  /// position: and velocity: of joints and points, acceleration: of points, effort: of driven joints. Without names:
+  /// positions of all joints and probes.
   /// @throws std::invalid_argument if there is no such output.
   Eigen::MatrixXd outputs(const std::vector<std::string>& names = {}) const;
   /// Names of the rows of outputs().
   std::vector<std::string> output_names(const std::vector<std::string>& names = {}) const;
-  /// Of the states of linear models about the present: states x directions. The columns of the states at the start are
-  /// the transition matrix.
+  /// Derivatives of the states of a linear model about the present: states x directions. The columns of the initial
+  /// states form the transition matrix.
   /// @throws std::runtime_error as linearise() does.
   Eigen::MatrixXd states() const;
-  std::vector<std::string> state_names() const;  ///< of the rows of states()
+  std::vector<std::string> state_names() const;  ///< names of the rows of states()
 
  private:
   class Implementation;

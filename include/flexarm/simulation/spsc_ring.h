@@ -1,5 +1,5 @@
 #pragma once
-/// A queue between two threads, for states of a simulation and commands to it.
+/// A lock-free queue between two threads, for states of a simulation and commands to it.
 
 #include <atomic>
 #include <cassert>
@@ -9,37 +9,38 @@
 
 namespace flexarm {
 
-/// A queue with a fixed number of entries, which one thread fills and one other thread empties: in order, without
-/// locks, waiting or allocations. Entries live as long as the ring, and keep their memory from one use to the next. A
-/// thread reads the other's count only if it must, since each time the memory has to move between their processors.
+/// A queue of fixed capacity for one producer thread and one consumer thread: first in, first out, without locks,
+/// waiting or allocations. Entries are constructed once and reused, so that they keep their memory. Each thread caches
+/// the other thread's count and reads it again only if it must, because each read moves a cache line between the
+/// processors.
 template <class Entry>
 class SpscRing {
  public:
-  /// @param capacity  entries that it can hold; > 0
+  /// @param capacity  number of entries, > 0
   /// @throws std::invalid_argument if it is 0
   explicit SpscRing(std::size_t capacity) : entries_(capacity) {
     if (capacity == 0) throw std::invalid_argument("capacity: expected a number of entries > 0, got 0");
   }
 
-  // ---- for the thread that fills it
-  /// Whether that many entries are free.
+  // ---- for the producer
+  /// Whether at least `count` entries are free.
   bool has_room(std::size_t count = 1) {
     const std::size_t pushed = pushed_.load(kOwn);
     if (entries_.size() - (pushed - seen_popped_) < count) seen_popped_ = popped_.load(kOther);
     return entries_.size() - (pushed - seen_popped_) >= count;
   }
-  /// The `index`-th entry after those that were pushed, to be filled. There must be room for it.
+  /// The `index`-th free entry, to be filled before push(). It must be free.
   Entry& free_entry(std::size_t index = 0) {
     assert(has_room(index + 1));
     return at(pushed_.load(kOwn) + index);
   }
-  /// Hands over the first `count` free entries, all at once.
+  /// Hands the first `count` free entries over to the consumer, all at once.
   void push(std::size_t count = 1) {
     assert(has_room(count));
     pushed_.store(pushed_.load(kOwn) + count, std::memory_order_release);
   }
 
-  // ---- for the thread that empties it
+  // ---- for the consumer
   std::size_t size() {
     seen_pushed_ = pushed_.load(kOther);
     return seen_pushed_ - popped_.load(kOwn);
@@ -66,7 +67,8 @@ class SpscRing {
   Entry& at(std::size_t count) { return entries_[count % entries_.size()]; }
 
   std::vector<Entry> entries_;
-  // Each is written by one of the threads, beside nothing of the other's. They count for ever.
+  // Only one thread writes each count, and the counts of different threads are on different cache lines. They never
+  // wrap.
   alignas(kCacheLine) std::atomic<std::size_t> pushed_{0};
   std::size_t seen_popped_ = 0;
   alignas(kCacheLine) std::atomic<std::size_t> popped_{0};

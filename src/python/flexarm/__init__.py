@@ -5,19 +5,20 @@
     simulation = flexarm.Simulation("arm.urdf")
     rows = simulation.run(1000, record=["joint/*/position"])
 
-docs/python.md has an example for each job; help(flexarm.Simulation) says units and shapes of everything. flexarm.msg
-and flexarm.srv are the messages and services of the ROS node.
+docs/python.md has an example for each task; help(flexarm.Simulation) lists units and shapes. flexarm.msg and
+flexarm.srv are the messages and services of the ROS node.
 """
 
 import importlib
 
-# Where each name is. They are fetched when somebody asks for them: who imports messages alone needs no simulator.
+# The module of each name. Modules are imported when a name is first used, so that the messages alone need no simulator.
 _HOMES = {
     "__version__": "_flexarm",
     "read_scene": "_flexarm",
     "read_scene_text": "_flexarm",
     "tune": "_flexarm",
     "LinearModel": "_flexarm",
+    "Recording": "_flexarm",
     "RunEvent": "_flexarm",
     "Scene": "_flexarm",
     "Sensitivities": "_flexarm",
@@ -25,9 +26,12 @@ _HOMES = {
     "State": "_flexarm",
     "StepResult": "_flexarm",
     "AccuracyError": "errors",
+    "ResultsError": "errors",
     "SceneError": "errors",
     "SceneWarning": "errors",
     "StepError": "errors",
+    "Page": "pages",
+    "show": "pages",
     "AccurateRun": "values",
     "Contact": "values",
     "Energies": "values",
@@ -35,6 +39,9 @@ _HOMES = {
     "Parameter": "values",
     "Tuning": "values",
     "Wrench": "values",
+    "read_run": "results",
+    "Run": "results",
+    "Spectrum": "results",
     "Environment": "environment",
     "VectorEnvironment": "environment",
 }

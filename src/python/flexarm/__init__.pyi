@@ -4,6 +4,7 @@ from ._flexarm import (
     read_scene_text,
     tune,
     LinearModel,
+    Recording,
     RunEvent,
     Scene,
     Sensitivities,
@@ -12,7 +13,9 @@ from ._flexarm import (
     StepResult,
 )
 from .environment import Environment, VectorEnvironment
-from .errors import AccuracyError, SceneError, SceneWarning, StepError
+from .errors import AccuracyError, ResultsError, SceneError, SceneWarning, StepError
+from .pages import Page, show
+from .results import read_run, Run, Spectrum
 from .values import (
     AccurateRun,
     Contact,
@@ -28,6 +31,7 @@ __all__ = [
     "read_scene_text",
     "tune",
     "LinearModel",
+    "Recording",
     "RunEvent",
     "Scene",
     "Sensitivities",
@@ -35,9 +39,12 @@ __all__ = [
     "State",
     "StepResult",
     "AccuracyError",
+    "ResultsError",
     "SceneError",
     "SceneWarning",
     "StepError",
+    "Page",
+    "show",
     "AccurateRun",
     "Contact",
     "Energies",
@@ -45,6 +52,9 @@ __all__ = [
     "Parameter",
     "Tuning",
     "Wrench",
+    "read_run",
+    "Run",
+    "Spectrum",
     "Environment",
     "VectorEnvironment",
 ]

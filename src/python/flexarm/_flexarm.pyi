@@ -1,4 +1,4 @@
-"""The extension module; its own texts say units and shapes of everything: help(flexarm.Simulation)."""
+"""Types of the extension module. Its docstrings say units and shapes: help(flexarm.Simulation)."""
 
 import os
 from typing import Any, Dict, Iterable, List, Literal, Optional, Sequence, Tuple, Union, overload
@@ -24,6 +24,7 @@ def read_scene(
     clamp_start: bool = ...,
     equilibrium_start: bool = ...,
     lock_massless: bool = ...,
+    xacro_args: str = ...,
 ) -> Scene: ...
 def read_scene_text(
     text: str,
@@ -95,6 +96,23 @@ class State:
     def __deepcopy__(self, memo: Dict[int, Any]) -> State: ...
     def __getstate__(self) -> bytes: ...
     def __setstate__(self, state: bytes) -> None: ...
+
+class Recording:
+    def __init__(self, simulation: Simulation, title: str = ..., rate: float = ...) -> None: ...
+    def keep(self) -> None: ...
+    def run(self, until: float) -> None: ...
+    def __len__(self) -> int: ...
+    def _encode(self) -> Tuple[str, bytes]: ...
+
+def _encode_rows(
+    simulation: Simulation,
+    columns: Sequence[Tuple[str, str]],
+    rows: numpy.ndarray,
+    title: str,
+    rate: float,
+    notes: List[str],
+) -> Tuple[str, bytes]: ...
+def _page(runs: Sequence[Tuple[str, bytes]]) -> str: ...
 
 class Simulation:
     def __init__(

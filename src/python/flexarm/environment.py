@@ -1,4 +1,4 @@
-"""Simulations as environments of reinforcement learning: one, and several that step in threads."""
+"""Simulations as environments for reinforcement learning: single ones, and vectors that step in threads."""
 
 import concurrent.futures
 import copy
@@ -21,25 +21,25 @@ SimulationOrScene = typing.Union[Simulation, Scene, str, "os.PathLike[str]"]
 
 
 class Environment(Env):
-    """A simulation with the reset() and step() that reinforcement learning expects: those of gymnasium.
+    """A simulation as an environment for reinforcement learning, with gymnasium's reset() and step().
 
-    It is a gymnasium.Env where gymnasium is installed, and does without it.
+    If gymnasium is installed, this class is a gymnasium.Env; it also works without gymnasium.
 
-    simulation: a Simulation, which is copied, or the Scene of one, or the path of its file. reset() goes back to the
-      state that it has now.
-    reward: `reward(observation, action, simulation)`, called after each step; a number.
-    observation: patterns of columns, as in Simulation.run(); the time is left out where no pattern asks for it.
-    joints: whose efforts are an action, in this order, by names or indices; None: all of effort_joints.
-    steps: of the simulation for each action, which is held over them.
-    duration: of an episode [s]; None: it has no end.
-    terminated: `terminated(observation, simulation)`, asked after each step; None: never.
-    start: `start(simulation, random)`, called by reset() with a numpy.random.Generator; None: nothing is changed.
-    failure_reward: in place of `reward` where a step of the simulation fails, which ends the episode.
+    simulation: a Simulation, which is copied, or a Scene, or the path of a scene's file. reset() returns to the state
+      that the simulation has when the environment is made.
+    reward: `reward(observation, action, simulation)`, called after each step; returns a number.
+    observation: patterns of columns, as in Simulation.run(). The time is included only if a pattern asks for it.
+    joints: names or indices of the joints whose efforts are an action, in this order; None: all of effort_joints.
+    steps: of the simulation per action; the action is held meanwhile.
+    duration: of an episode [s]; None: unlimited.
+    terminated: `terminated(observation, simulation)`, called after each step; None: episodes never terminate so.
+    start: `start(simulation, random)`, called by reset() with a numpy.random.Generator; None: no changes at the start.
+    failure_reward: the reward if a step of the simulation fails, which ends the episode.
 
-    observation_space: all numbers, shape (columns,). action_space: efforts within effort_limits, shape (joints,).
-    observation_names, observation_units: of the numbers of an observation, shape (columns,).
-    action_joints: names of the joints of an action, shape (joints,) [N m or N].
-    simulation: the one that steps, to look at.
+    observation_space: shape (columns,), unbounded. action_space: shape (joints,), bounded by effort_limits.
+    observation_names, observation_units: of an observation's numbers, lists of length `columns`.
+    action_joints: names of an action's joints; actions have the shape (joints,) [N m or N].
+    simulation: the simulation that is stepped; only to be read.
     """
 
     metadata: typing.Dict[str, typing.Any] = {"render_modes": []}
@@ -74,7 +74,7 @@ class Environment(Env):
         names = [joint if isinstance(joint, str) else self.simulation.joint_names[joint] for joint in joints]
         for name in names:
             if name not in known:
-                raise ValueError("joints: expected some that take efforts, of [%s], got '%s'"
+                raise ValueError("joints: expected joints that take efforts, of [%s], got '%s'"
                                  % (", ".join(known), name))
         return names
 
@@ -83,7 +83,7 @@ class Environment(Env):
 
     def reset(self, *, seed: typing.Optional[int] = None,
               options: typing.Optional[Info] = None) -> typing.Tuple[numpy.ndarray, Info]:
-        """Begins an episode; `seed`: of the generator that `start` is given, None: it goes on. Options mean nothing.
+        """Begins an episode. `seed`: for the generator of `start`; None: the generator goes on. Options are ignored.
 
         Returns the observation and an empty dictionary.
         """
@@ -94,16 +94,16 @@ class Environment(Env):
         return self._observe(), {}
 
     def step(self, action: typing.Any) -> Outcome:
-        """Holds efforts, shape (joints,) [N m or N], over the steps of an action.
+        """Holds the action, efforts of the shape (joints,) [N m or N], for `steps` steps of the simulation.
 
-        Returns observation, reward, terminated, truncated (the duration is over), and a dictionary: after a failed step
-        of the simulation, in which the episode ends, "failure" says what it was.
+        Returns observation, reward, terminated, truncated (whether the duration is over), and a dictionary. If a step
+        of the simulation fails, the episode ends, and the dictionary's "failure" contains the reason.
         """
         action = numpy.ascontiguousarray(action, dtype=float)
         return self._judge(action, self._advance(action))
 
     def _advance(self, action: numpy.ndarray) -> typing.Optional[str]:
-        """What has failed; other threads run meanwhile."""
+        """Makes the steps of an action without Python's global lock. Returns why a step failed, or None."""
         try:
             self.simulation.run(self._steps, action, self.action_joints)
         except StepError as failure:
@@ -127,14 +127,15 @@ class Environment(Env):
 class VectorEnvironment(VectorEnv):
     """Several environments as one, with the reset() and step() of gymnasium's vector environments.
 
-    num_envs: how many. threads: that step them, None: one for each processor. What is left are the arguments of
-    Environment, which have the same meaning for each; `reward`, `terminated` and `start` are called in the calling
-    thread, one environment after the other. Results have the bits of environments that are stepped one by one.
+    num_envs: number of environments. threads: number of threads that step them; None: one per processor. All other
+    arguments are those of Environment and apply to each. `reward`, `terminated` and `start` are called in the calling
+    thread, for one environment after the other. Results are bitwise those of environments that are stepped one by one.
 
-    An environment that has ended begins anew by the next step: its action counts for nothing, its reward is 0.
+    After an episode has ended, the next step begins a new episode: it ignores the action, and its reward is 0.
 
-    environments: each by itself, to look at.
-    single_observation_space, single_action_space: theirs; observation_space and action_space have a row for each.
+    environments: the single environments; only to be read.
+    single_observation_space, single_action_space: of one environment; observation_space and action_space have a row
+      for each environment.
     """
 
     metadata: typing.Dict[str, typing.Any] = {"render_modes": [], **AUTORESET}
@@ -155,12 +156,12 @@ class VectorEnvironment(VectorEnv):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._ended = [False] * num_envs
         self._threads = min(threads or len(os.sched_getaffinity(0)), num_envs)
-        # The calling thread is one of them.
+        # The calling thread is one of the threads.
         self._pool = concurrent.futures.ThreadPoolExecutor(self._threads - 1) if self._threads > 1 else None
 
     def reset(self, *, seed: typing.Union[None, int, typing.Sequence[typing.Optional[int]]] = None,
               options: typing.Optional[Info] = None) -> typing.Tuple[numpy.ndarray, Info]:
-        """Begins an episode in each; `seed`: that of the first one, which the others count on from, or one for each.
+        """Begins an episode in each environment. `seed`: of the first one, the others count on from it; or a list.
 
         Returns the observations, shape (num_envs, columns), and an empty dictionary.
         """
@@ -176,11 +177,11 @@ class VectorEnvironment(VectorEnv):
         return numpy.array([each.reset(seed=own)[0] for each, own in zip(self.environments, seeds)]), {}
 
     def step(self, actions: typing.Any) -> Outcomes:
-        """Environment.step() of each, with its row of efforts, shape (num_envs, joints) [N m or N].
+        """Makes a step in each environment, with its row of `actions`: efforts, shape (num_envs, joints) [N m or N].
 
         Returns arrays of observations, shape (num_envs, columns), rewards, terminated and truncated, shape (num_envs,),
-        and a dictionary: where a step of a simulation has failed "failure" has the texts, and "_failure" says whose.
-        Raises ValueError, before anything has moved, if an effort is not finite or the shape wrong.
+        and a dictionary. If steps of simulations fail, its "failure" has the reasons and "_failure" tells for which
+        environments. Raises ValueError, before any step, if an effort is not finite or the shape is wrong.
         """
         actions = numpy.ascontiguousarray(actions, dtype=float)
         if actions.shape != self.action_space.shape:
@@ -221,7 +222,7 @@ class VectorEnvironment(VectorEnv):
 
 
 def _joined(infos: typing.Sequence[Info]) -> Info:
-    """As gymnasium's vector environments have them: an array of each value, and which ones there are."""
+    """Joins dictionaries in the format of gymnasium's vector environments: an array for each key, and a mask "_key"."""
     there = numpy.array(["failure" in info for info in infos])
     if not there.any():
         return {}

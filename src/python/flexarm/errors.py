@@ -1,4 +1,4 @@
-"""What can go wrong: exceptions and warnings."""
+"""Exceptions and warnings of the package."""
 
 import typing
 
@@ -10,16 +10,16 @@ class SceneWarning(UserWarning):
 
 
 class SceneError(ValueError):
-    """A scene cannot be used; the text says what is wrong with it, one line for each finding, with file and line."""
+    """A scene cannot be used. The text has one line for each error, with file and line."""
 
 
 class StepError(RuntimeError):
-    """A step has failed, or there is no equilibrium; the simulation is at its last good state and can be used on.
+    """A step has failed, or no equilibrium was found. The simulation is at its last good state and can still be used.
 
-    The text says what failed, where, when, what was tried, and what usually helps.
+    The text says what failed, where and when, what was tried, and what usually helps.
     time: of the last good state [s].
-    reason: in a few words.
-    rows: what run() had recorded until then, shape (rows, columns); None if it records nothing.
+    reason: a few words.
+    rows: what run() has recorded until then, shape (rows, columns); None if it records nothing.
     """
 
     def __init__(self, text: str, time: float, reason: str, rows: typing.Optional[numpy.ndarray] = None) -> None:
@@ -31,10 +31,11 @@ class StepError(RuntimeError):
 
 
 class AccuracyError(RuntimeError):
-    """run_to_accuracy() has given up, the simulation being at the end of its last try; or tune() has.
+    """run_to_accuracy() or tune() has not reached its goal.
 
-    estimate: of the error of that, relative; NaN: unknown.
-    rows: that run_to_accuracy() has recorded, shape (intervals + 1, columns); None if it records nothing.
+    After run_to_accuracy(), the simulation is at the end of the last try.
+    estimate: of the error of the last try, relative; NaN: unknown.
+    rows: what run_to_accuracy() has recorded, shape (intervals + 1, columns); None if it records nothing.
     """
 
     def __init__(self, text: str, estimate: float, rows: typing.Optional[numpy.ndarray] = None) -> None:
@@ -43,3 +44,7 @@ class AccuracyError(RuntimeError):
 
     def __str__(self) -> str:
         return str(self.args[0])
+
+
+class ResultsError(ValueError):
+    """A file of results cannot be read, or its columns not be drawn. The text says what was expected."""

@@ -1,4 +1,4 @@
-"""What environments take from gymnasium; where it is not installed, small equals of the same names."""
+"""Classes of gymnasium that environments use; if gymnasium is not installed, small replacements with these names."""
 
 import typing
 
@@ -25,11 +25,11 @@ except ImportError:
             self.seed()
 
         def seed(self, seed: typing.Optional[int] = None) -> None:
-            """Of sample()."""
+            """Seeds sample()."""
             self._random = numpy.random.default_rng(seed)
 
         def sample(self) -> numpy.ndarray:
-            """Uniform between bounds, exponential beyond one of them, normal where there is none."""
+            """A random array: uniform between two bounds, exponential with one bound, normal without bounds."""
             below, above = numpy.isfinite(self.low), numpy.isfinite(self.high)
             low, high = numpy.where(below, self.low, 0), numpy.where(above, self.high, 0)
             beyond = self._random.exponential(size=self.shape)
@@ -40,7 +40,7 @@ except ImportError:
             return sample.astype(self.dtype)
 
         def contains(self, x: typing.Any) -> bool:
-            """Whether an array is one of them."""
+            """Whether the array `x` is in the space."""
             x = numpy.asarray(x)
             return x.shape == self.shape and bool(numpy.all((self.low <= x) & (x <= self.high)))
 
@@ -54,7 +54,7 @@ except ImportError:
             return "Box(%s, %s, %s, %s)" % (self.low.min(initial=0), self.high.max(initial=0), self.shape, self.dtype)
 
     class Env:  # type: ignore[no-redef]
-        """What both kinds of environments have."""
+        """The base class of environments."""
 
         metadata: typing.Dict[str, typing.Any] = {"render_modes": []}
         render_mode = None
@@ -63,43 +63,43 @@ except ImportError:
 
         @property
         def np_random(self) -> numpy.random.Generator:
-            """The generator that `start` is given."""
+            """The random generator of `start`."""
             if self._random is None:
                 self._random = numpy.random.default_rng()
             return self._random
 
         @property
         def unwrapped(self) -> "Env":
-            """Itself."""
+            """The environment itself, which has no wrapper."""
             return self
 
         def reset(self, *, seed: typing.Optional[int] = None, options: typing.Any = None) -> typing.Any:
-            """Seeds the generator, None: it goes on."""
+            """Seeds the generator; None: the generator goes on."""
             if seed is not None:
                 self._random = numpy.random.default_rng(seed)
 
         def close(self, **options: typing.Any) -> None:
-            """Lets go of what it holds."""
+            """Releases resources."""
             self.close_extras()
 
         def close_extras(self, **options: typing.Any) -> None:
-            """Of a class that holds something."""
+            """Releases the resources of a subclass."""
 
     class VectorEnv(Env):  # type: ignore[no-redef]
         """Several environments as one."""
 
     def batch_space(space: Box, n: int = 1) -> Box:  # type: ignore[misc]
-        """Of an array for each of n."""
+        """The space of n arrays, as the rows of one array."""
         return Box(space.low, space.high, (n, *space.shape), space.dtype)
 
 
-# An environment that has ended begins anew by the next step, whose action counts for nothing.
+# After an episode has ended, the next step begins a new one and ignores its action.
 AUTORESET: typing.Dict[str, typing.Any] = {"autoreset_mode": "NextStep"}
 if gymnasium is not None and hasattr(gymnasium.vector, "AutoresetMode"):
     AUTORESET = {"autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
 
 
 def register(name: str, one: str, several: str) -> None:
-    """Makes classes ("module:Class") known to gymnasium.make() and make_vec(), where there is one."""
+    """Registers classes ("module:Class") for gymnasium.make() and make_vec(), if gymnasium is installed."""
     if gymnasium is not None:
         gymnasium.register(id=name, entry_point=one, vector_entry_point=several)

@@ -1,4 +1,4 @@
-"""Values that simulations take and give."""
+"""Values that simulations take and return."""
 
 import dataclasses
 import typing
@@ -10,82 +10,82 @@ if typing.TYPE_CHECKING:
 
 
 class Energies(typing.NamedTuple):
-    """Of a state [J]; the potential one is that of gravity, total the sum of the first three."""
+    """Energies of a state [J]. `potential` is the energy of gravity; `total` is the sum of the first three."""
 
     kinetic: float
     strain: float
     potential: float
     total: float
-    work: float  # done from outside since the start
+    work: float  # by external forces since the start
     dissipated: float  # since the start
 
 
 class Contact(typing.NamedTuple):
-    """A point at which one body touches another one, as Simulation.contacts has them."""
+    """A point at which two bodies touch; see Simulation.contacts."""
 
-    first: str  # links or grounds, as a <contact> names both, else in the scene's order
+    first: str  # link or ground; order as in the scene's <contact> if it names both, else as in the scene
     second: str
     position: numpy.ndarray  # shape (3,), in the world [m]
-    normal: numpy.ndarray  # shape (3,), unit, from the second to the first
-    force: numpy.ndarray  # shape (3,), on the first, friction included, world axes [N]
-    penetration: float  # how deep they are in each other [m]
+    normal: numpy.ndarray  # shape (3,), unit vector, from the second to the first body
+    force: numpy.ndarray  # shape (3,), on the first body, including friction, world axes [N]
+    penetration: float  # depth by which the bodies penetrate each other [m]
 
 
 class Parameter(typing.NamedTuple):
-    """A number that the expressions of a scene name."""
+    """A named number of a scene, which its expressions can use."""
 
     name: str
-    value: float  # that the scene was read with
-    min: typing.Optional[float]  # what it may be set to; None: anything
+    value: float  # with which the scene was read
+    min: typing.Optional[float]  # limits of the value; None: no limit
     max: typing.Optional[float]
 
 
 class Mode(typing.NamedTuple):
-    """A motion Re(shape exp((rate + 2 pi i frequency) t)) of small amplitude about a configuration."""
+    """A mode of small amplitude: the motion Re(shape exp((rate + 2 pi i frequency) t)) about a configuration."""
 
     frequency: float  # [Hz]; 0: no oscillation
-    rate: float  # [1/s]; > 0: grows
-    damping_ratio: float  # of critical damping
-    node_motion: numpy.ndarray  # complex, shape (nodes, 6): displacement, spin, world axes; largest component 1
-    joint_motion: numpy.ndarray  # complex, shape (joints,) [m, rad], in the same units
+    rate: float  # [1/s]; > 0: the motion grows
+    damping_ratio: float  # as a fraction of critical damping
+    node_motion: numpy.ndarray  # complex, shape (nodes, 6): displacement, rotation, world axes; largest component 1
+    joint_motion: numpy.ndarray  # complex, shape (joints,) [m, rad], normalised like node_motion
 
 
 class AccurateRun(typing.NamedTuple):
-    """What run_to_accuracy() has come to."""
+    """The result of run_to_accuracy()."""
 
     estimate: float  # of the error, relative to `scale`
-    scale: float  # of errors [m]
+    scale: float  # length by which errors are divided [m]
     scheme: str  # of the last try
     tries: int
     steps: int  # of all tries
-    steps_per_interval: int  # of the last one
+    steps_per_interval: int  # of the last try
     interval: float  # [s]
     rows: typing.Optional[numpy.ndarray]  # shape (intervals + 1, columns); None: nothing was recorded
 
 
 class Tuning(typing.NamedTuple):
-    """What tune() has found."""
+    """The result of tune()."""
 
-    scene: "Scene"  # with these settings
-    mesh: str  # of its beams, in the scene's order: elements x order
+    scene: "Scene"  # the scene with the settings that were found
+    mesh: str  # elements x order of each beam, in the scene's order
     scheme: str
     step: float  # [s]
     tolerance: float  # of Newton's method
-    error: float  # against a finer run, relative to `scale`
-    scale: float  # how far points move [m]
-    load: float  # time of the processor for a simulated second [-]
-    runs: int  # that the search has made
+    error: float  # compared with a finer run, relative to `scale`
+    scale: float  # largest displacement of points [m]
+    load: float  # processor time per simulated time [-]
+    runs: int  # number of runs that the search has made
 
 
 @dataclasses.dataclass
 class Wrench:
-    """What Simulation.apply_wrenches() applies to a link, or a spring and a damper that pull on it."""
+    """A force and a moment on a link, or a spring and a damper that pull it; for Simulation.apply_wrenches()."""
 
     link: typing.Union[str, int]
     force: typing.Sequence[float] = (0, 0, 0)  # [N]
     moment: typing.Sequence[float] = (0, 0, 0)  # about the point [N m]
     at: typing.Sequence[float] = (0, 0, 0)  # the point, in the undeformed link's frame [m]
-    follows: bool = False  # axes are those of the link's material there, and turn with it; else the world's
+    follows: bool = False  # True: axes of the link's material at the point, which turn with it; False: world axes
     target: typing.Sequence[float] = (0, 0, 0)  # place in the world to which the spring pulls the point [m]
     stiffness: float = 0  # of the spring [N/m]
-    damping: float = 0  # of the damper beside it [N s/m]
+    damping: float = 0  # of the damper parallel to the spring [N s/m]

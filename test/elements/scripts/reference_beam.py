@@ -1,9 +1,9 @@
 """Residuals of one geometrically exact beam element over one step, written from the formulas alone.
 
-A second implementation to hold the library to: dense numpy, nothing shared, no tangents, no speed. Formulas are those
-of docs/notes/beam.md and of Munoz 2004. Positions [m] and vectors are in the world unless they are called material;
-rotations are matrices from the section to the world, "nodal" arrays have one row (or matrix) per node. Residuals are
-{force [N], moment [N m]} of node 1, of node 2, ...; moments are conjugate to spatial spins.
+This is a second, independent implementation to test the library against: dense numpy, without tangents, not optimised.
+The formulas are those of docs/notes/beam.md and of Munoz 2004. Positions [m] and vectors are in world axes unless they
+are called material. Rotations are matrices from the section to the world. "Nodal" arrays have one row (or matrix) per
+node. Residuals are {force [N], moment [N m]} of node 1, of node 2, ...; moments are conjugate to spatial spins.
 """
 
 import dataclasses
@@ -27,32 +27,33 @@ def vee(m):
 
 
 def series(x, first):
-    """sum_j (-x)^j / (2 j + first)!: (sin t)/t, (1 - cos t)/t^2, (t - sin t)/t^3 for first = 1, 2, 3 and x = t^2.
+    """Return sum_j (-x)^j / (2 j + first)!. x may be complex, for derivatives.
 
-    Also of complex x, for derivatives; converges to round-off for t <= pi.
+    For x = t^2 and first = 1, 2, 3 it is (sin t)/t, (1 - cos t)/t^2, (t - sin t)/t^3. It converges to round-off for
+    t <= pi.
     """
     return sum((-x) ** j / math.factorial(2 * j + first) for j in range(20))
 
 
 def exp(theta):
-    """Rotation by a rotation vector."""
+    """Return the rotation of a rotation vector."""
     x, h = theta @ theta, hat(theta)
     return I3 + series(x, 1) * h + series(x, 2) * h @ h
 
 
 def tangent(theta):
-    """T: spin = T(theta) d(theta)."""
+    """Return T of a rotation vector: spin = T(theta) d(theta)."""
     x, h = theta @ theta, hat(theta)
     return I3 + series(x, 2) * h + series(x, 3) * h @ h
 
 
 def tangent_scaled(rotation):
-    """2 tan(angle/2) axis, the tangent-scaled rotation vector; angles below pi."""
+    """Return the tangent-scaled rotation vector, 2 tan(angle/2) axis, for angles below pi."""
     return 4 * vee(rotation) / (1 + np.trace(rotation))
 
 
 def log(rotation):
-    """Rotation vector; angles below pi."""
+    """Return the rotation vector, for angles below pi."""
     scaled = tangent_scaled(rotation)
     t = 0.25 * scaled @ scaled  # tan^2 of half the angle
     if abs(t) < 1e-3:
@@ -61,19 +62,19 @@ def log(rotation):
 
 
 def cayley(scaled):
-    """Rotation by a tangent-scaled vector."""
+    """Return the rotation of a tangent-scaled vector."""
     h = hat(scaled)
     return I3 + (h + 0.5 * h @ h) / (1 + 0.25 * scaled @ scaled)
 
 
 def cayley_tangent(scaled):
-    """S: spin = S(w) dw."""
+    """Return S of a tangent-scaled vector w: spin = S(w) dw."""
     return (I3 + 0.5 * hat(scaled)) / (1 + 0.25 * scaled @ scaled)
 
 
 # ---------------------------------------------------------------- the element
 
-# Parent coordinates of the nodes: Gauss-Lobatto points.
+# Parent coordinates of the nodes (Gauss-Lobatto points).
 NODES = {
     2: [-1, 1],
     3: [-1, 0, 1],
@@ -83,7 +84,7 @@ NODES = {
 
 
 def lagrange(nodes, x):
-    """Values and derivatives of the Lagrange functions, from polynomials in monomial form."""
+    """Return values and derivatives of the Lagrange functions at x, from polynomials in monomial form."""
     values, derivatives = [], []
     for i, own in enumerate(NODES[nodes]):
         others = [c for k, c in enumerate(NODES[nodes]) if k != i]
@@ -95,7 +96,7 @@ def lagrange(nodes, x):
 
 @dataclasses.dataclass
 class Point:
-    """An integration point: shape functions, their derivatives by arc length [1/m], weight [m]."""
+    """An integration point: shape functions, their derivatives with respect to arc length [1/m], and weight [m]."""
 
     shape: np.ndarray
     slope: np.ndarray
@@ -103,7 +104,7 @@ class Point:
 
 
 def points(count, positions):
-    """Gauss-Legendre points over the undeformed line."""
+    """Return Gauss-Legendre points on the undeformed line."""
     result = []
     for x, weight in zip(*np.polynomial.legendre.leggauss(count)):
         shape, derivative = lagrange(len(positions), x)
@@ -113,7 +114,7 @@ def points(count, positions):
 
 
 def interpolated(point, rotations):
-    """Rotation and material curvature by the strain-invariant local interpolation (beam.md 2.3)."""
+    """Return rotation and material curvature by the strain-invariant local interpolation (beam.md 2.3)."""
     nodes = len(rotations)
     first, second = rotations[(nodes - 1) // 2], rotations[nodes // 2]
     reference = first @ exp(0.5 * log(first.T @ second))
@@ -123,14 +124,14 @@ def interpolated(point, rotations):
 
 
 def material_spin(point, rotations, spins):
-    """Material angular velocity of the interpolated section under nodal spins, by a complex step."""
+    """Return the material angular velocity of the interpolated section for nodal spins, by a complex step."""
     h = 1e-40
     moved = np.array([exp(1j * h * spin) @ rotation for rotation, spin in zip(rotations, spins)])
     return vee(interpolated(point, rotations)[0].T @ interpolated(point, moved)[0].imag / h)
 
 
 class Element:
-    """A beam element; stiffness about the mass centroid, mass [kg/m], material rotary inertia [kg m]."""
+    """A beam element: stiffness about the mass centroid, mass [kg/m], material rotary inertia [kg m]."""
 
     def __init__(self, positions, rotations, stiffness, mass, inertia):
         self.stiffness, self.mass, self.inertia = stiffness, mass, inertia
@@ -145,18 +146,20 @@ class Element:
         return np.concatenate([rotation.T @ (point.slope @ positions), curvature])
 
     def strain(self, k, positions, section):
-        """{Gamma, K} at stiffness point k from the section's rotation and curvature there."""
+        """Return {Gamma, K} at stiffness point k, from the section's rotation and curvature there."""
         return self._measures(self.stiffness_points[k], positions, section) - self.references[k]
 
     def node_lengths(self):
-        """int I^i ds [m]."""
+        """Return the nodes' shares of the length, int I^i ds [m]."""
         return sum(p.weight * p.shape for p in self.mass_points)
 
 
 @dataclasses.dataclass
 class Step:
-    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its beginning. Angular quantities of
-    nodes and mass points are material."""
+    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its beginning.
+
+    Angular quantities of nodes and mass points are material.
+    """
 
     step: float
     r0: np.ndarray
@@ -171,18 +174,18 @@ class Step:
 
     @functools.cached_property
     def increments(self):
-        """Nodal tangent-scaled rotation increments."""
+        """Return the tangent-scaled rotation increments of the nodes."""
         return np.array([tangent_scaled(b @ a.T) for a, b in zip(self.R0, self.R1)])
 
 
 def force_rows(point, n, m, tangent_vector):
-    """What the stress resultants n, m (world) at a point contribute to the residual."""
+    """Return the contribution of the stress resultants n, m (world) at a point to the residual."""
     moments = np.outer(point.slope, m) - np.outer(point.shape, np.cross(tangent_vector, n))
     return point.weight * np.hstack([np.outer(point.slope, n), moments])
 
 
 def inertia_rows(point, force, moment):
-    """What inertia per length at a point contributes."""
+    """Return the contribution of inertia per length at a point to the residual."""
     return point.weight * np.hstack([np.outer(point.shape, force), np.outer(point.shape, moment)])
 
 
@@ -190,7 +193,7 @@ def inertia_rows(point, force, moment):
 
 
 def static(element, r, R):
-    """Internal forces of a configuration (beam.md 2.2)."""
+    """Return the internal forces of a configuration (beam.md 2.2)."""
     rows = np.zeros((element.nodes, 6))
     for k, point in enumerate(element.stiffness_points):
         section = interpolated(point, R)
@@ -200,7 +203,8 @@ def static(element, r, R):
 
 
 def newmark(element, step, alpha=0.0):
-    """Newmark's rule; with alpha the forces conjugate to spins are interpolated (HHT2; Munoz 2004, eq. 4.11)."""
+    """Return the residual of Newmark's rule. With alpha, forces conjugate to spins are interpolated (HHT2; Munoz 2004,
+    eq. 4.11)."""
     h, gamma, beta = step.step, 0.5 - alpha, 0.25 * (1 - alpha) ** 2
     rows = (1 + alpha) * static(element, step.r1, step.R1) - alpha * static(element, step.r0, step.R0)
 
@@ -221,7 +225,7 @@ def newmark(element, step, alpha=0.0):
 
 
 def momentum_rates(element, step, is_backward=False):
-    """Rates of momentum at the mass points, and the change of kinetic energy over the step [J]."""
+    """Return the rates of momentum at the mass points, and the change of kinetic energy over the step [J]."""
     rows, energy = np.zeros((element.nodes, 6)), 0.0
     for point, W in zip(element.mass_points, step.point_spin):
         begin, end = interpolated(point, step.R0)[0], interpolated(point, step.R1)[0]
@@ -237,7 +241,8 @@ def momentum_rates(element, step, is_backward=False):
 
 
 def algorithmic_rows(element, step, k, stress, is_backward=False):
-    """Stress of a step at stiffness point k: forces by the mean rotation, moments by T(omega) Lambda_0 (eq. 6.13)."""
+    """Return the rows of a stress over a step at stiffness point k. Forces have the mean rotation, moments T(omega)
+    Lambda_0 (eq. 6.13)."""
     point = element.stiffness_points[k]
     begin, end = interpolated(point, step.R0)[0], interpolated(point, step.R1)[0]
     line0, line1 = point.slope @ step.r0, point.slope @ step.r1
@@ -247,14 +252,14 @@ def algorithmic_rows(element, step, k, stress, is_backward=False):
 
 
 def strains(element, step, k):
-    """At the beginning and at the end."""
+    """Return the strains at stiffness point k at the beginning and at the end."""
     point = element.stiffness_points[k]
     return (element.strain(k, step.r0, interpolated(point, step.R0)),
             element.strain(k, step.r1, interpolated(point, step.R1)))
 
 
 def momentum(element, step, is_backward=False):
-    """M1; backward: M2."""
+    """Return the residual of M1, or of M2 if is_backward."""
     rows, _ = momentum_rates(element, step, is_backward)
     for k in range(element.nodes - 1):
         before, after = strains(element, step, k)
@@ -263,7 +268,8 @@ def momentum(element, step, is_backward=False):
 
 
 def beta1(element, step, with_moments):
-    """M1 and a multiple of the rows of Delta N (repaired: and Delta M) that closes the element's energy (eq. 6.22)."""
+    """Return M1 plus a multiple of the rows of Delta N (repaired: and Delta M) that closes the element's energy (eq.
+    6.22)."""
     rows, kinetic = momentum_rates(element, step)
     correction, strain_energy = np.zeros((element.nodes, 6)), 0.0
     for k, point in enumerate(element.stiffness_points):
@@ -280,7 +286,8 @@ def beta1(element, step, with_moments):
 
 
 def std(element, step):
-    """Simo, Tarnow and Doblare: tangent-scaled increments are interpolated (sec. 6.2). The begin is the local one."""
+    """Return the residual of Simo, Tarnow and Doblare, which interpolates tangent-scaled increments (sec. 6.2). The
+    rotation at the beginning is the local interpolation."""
     rows, w_nodes, h, J = np.zeros((element.nodes, 6)), step.increments, step.step, element.inertia
     for point, W in zip(element.mass_points, step.point_spin):
         begin = interpolated(point, step.R0)[0]
@@ -309,11 +316,11 @@ class EnergyMomentumPoint:
     """A stiffness point of the energy-momentum scheme over a step."""
 
     point: Point
-    mean: np.ndarray  # rotation, average of both ends
-    line: np.ndarray  # r', the same
+    mean: np.ndarray  # rotation, mean of both ends
+    line: np.ndarray  # r', mean of both ends
     conjugate: np.ndarray  # s, to which the residual is conjugate: the discrete {Delta Gamma, Delta K}
     stress: np.ndarray  # C times the mean strain
-    change: np.ndarray  # of the strain
+    change: np.ndarray  # change of the strain
 
 
 def energy_momentum_point(element, step, k):
@@ -327,7 +334,8 @@ def energy_momentum_point(element, step, k):
 
 
 def energy_momentum(element, step, with_multiplier, damping=0.0):
-    """em (with the multiplier) or em0: rotary inertia lumped at the nodes; `damping` [s] is stiffness-proportional."""
+    """Return the residual of em (with the multiplier) or em0. Rotary inertia is lumped at the nodes; `damping` [s] is
+    stiffness-proportional."""
     h, J = step.step, element.inertia
     at_points = [energy_momentum_point(element, step, k) for k in range(element.nodes - 1)]
     rows = np.zeros((element.nodes, 6))

@@ -1,9 +1,10 @@
-"""Joints with play, written from section 11 of docs/notes/contact.md alone: holes, their limit, a slider-crank.
+"""Reference for joints with play, written from section 11 of docs/notes/contact.md alone.
 
-check_holes() says that work in holes is exact, check_socket() that nothing is lost over many hits, check_limit() how
-fast a joint with play tends to the one without. run_crank() integrates the slider-crank of Flores and Ambrosio
-(Computers & Structures 82 (2004) 1359) with scipy, from event to event of the law: the numbers that
-test/reference/clearance_test.cpp holds the library to. Run it for all of them.
+check_holes() checks that the work in holes is exact, check_socket() that no energy is lost over many hits,
+check_limit()
+how fast a joint with play tends to the joint without. run_crank() integrates the slider-crank of Flores and Ambrosio
+(Computers & Structures 82 (2004) 1359) with scipy, from event to event of the law. It prints the numbers that
+test/reference/clearance_test.cpp compares with. Run this file for all of them.
 """
 
 import numpy as np
@@ -19,7 +20,7 @@ from reference_contact_laws import damping_of
 
 
 def ball_gap(y, radius):
-    """From the inside of a ball: value and gradient."""
+    """Return the gap to the inside of a spherical hole, and its gradient."""
     size = np.linalg.norm(y)
     return radius - size, -y / size
 
@@ -38,14 +39,14 @@ def check_holes():
             way = np.append(y1 - y0, np.zeros(3))
             gradient = gonzalez(np.append(gap(0.5 * (y0 + y1), 0.8)[1], np.zeros(3)), g1 - g0, way, 1.0)[:3]
             worst = max(worst, abs(gradient @ (y1 - y0) - (g1 - g0)))
-            # Between two places in a hole there is nothing else: the gap is concave.
+            # The gap of a hole is concave, so it cannot be deeper between the ends of a chord.
             inside = min(gap(y0 + s * (y1 - y0), 0.8)[0] for s in np.linspace(0, 1, 21))
             across += inside < min(g0, g1) - 1e-12
     print(f"holes: work {worst:.1e}, chords that are deeper between their ends {across}")
 
 
 def check_socket():
-    """A free body whose point is in a socket of the world, elastic: energy over 100 hits."""
+    """Check the energy over 100 elastic hits of a free body that has a point in a socket of the world."""
     law = dict(h=2e-3, k=1e5)
     arm = np.array([0.1, 0.05, -0.02])
     body = Body(1.0, [2e-3, 3e-3, 4e-3], (-arm, I3), np.array([0.5, 0.2, -0.1]), np.array([1.0, -2, 0.5]))
@@ -65,7 +66,8 @@ def check_socket():
 
 
 def pendulum(play, stiffness, until, start=0.5):
-    """Angle of a pendulum on a pin with play, from rest, as it would be pressed without play; 0: without."""
+    """Return the angle of a pendulum on a pin with play at time `until`. It starts from rest, pressed as without play;
+    play 0 is without play."""
     mass, inertia, arm, g = 1.0, 0.02, 0.5, 9.81
     whole = inertia + mass * arm**2
 
@@ -85,7 +87,7 @@ def pendulum(play, stiffness, until, start=0.5):
         return [*y[3:], force[0] / mass, force[1] / mass - g, moment / inertia]
 
     rate = fixed(0, [start, 0])[1]
-    tangent = np.array([np.cos(start), np.sin(start)])  # of the centre's way
+    tangent = np.array([np.cos(start), np.sin(start)])  # direction of the centre's motion
     force = mass * (arm * rate * tangent + np.array([0, g]))
     pin = -force / np.linalg.norm(force) * (play + np.linalg.norm(force) / stiffness)
     centre = pin - arm * np.array([-np.sin(start), np.cos(start)])
@@ -102,11 +104,12 @@ def check_limit():
 
 
 class Crank:
-    """Crank at 5000 rpm, rod, slider; play between the last two. y: angle of the rod, place of the slider, rates."""
+    """A crank at 5000 rpm with rod and slider, and play between rod and slider. y: angle of the rod, position of the
+    slider, and their rates."""
 
     CRANK, ROD, ROD_MASS, ROD_INERTIA, SLIDER = 0.05, 0.12, 0.21, 2.5e-4, 0.14  # m, kg, kg m^2
     SPEED, PLAY, RESTITUTION = 5000 * 2 * np.pi / 60, 0.5e-3, 0.9
-    STIFFNESS = 3e8  # N/m, of Hertz' law of the authors (6.6e10 N/m^1.5) at 8 kN, by force over depth
+    STIFFNESS = 3e8  # N/m: force over depth at 8 kN of the authors' law by Hertz (6.6e10 N/m^1.5)
 
     def __init__(self):
         self.damping = damping_of(self.RESTITUTION)
@@ -115,7 +118,8 @@ class Crank:
         self.start = np.array([0, self.CRANK + self.ROD, -self.CRANK * self.SPEED / self.ROD, 0])
 
     def pin(self, t, y):
-        """Rod's end from the slider's bearing: place, rate; tangent of the rod, acceleration of the crank's pin."""
+        """Return position and rate of the rod's end relative to the slider's bearing, tangent of the rod, and
+        acceleration of the crank's pin."""
         along = np.array([np.cos(self.SPEED * t), np.sin(self.SPEED * t)])
         rod = np.array([np.cos(y[0]), np.sin(y[0])])
         tangent = np.array([-rod[1], rod[0]])
@@ -131,7 +135,7 @@ class Crank:
         return place @ rate / max(np.linalg.norm(place), 1e-300)
 
     def force(self, t, y, speed):
-        """Of the contact; speed: of the approach, None: there is none."""
+        """Return the contact force. speed: speed of the approach; None: no contact."""
         depth = self.depth(t, y)
         if speed is None or depth <= 0:
             return 0.0
@@ -140,17 +144,18 @@ class Crank:
 
     def rates(self, t, y, speed):
         place, _, tangent, acceleration = self.pin(t, y)
-        force = self.force(t, y, speed) * place / max(np.linalg.norm(place), 1e-300)  # on the slider
+        force = self.force(t, y, speed) * place / max(np.linalg.norm(place), 1e-300)  # force on the slider
         turn = -0.5 * self.ROD_MASS * self.ROD * acceleration @ tangent - self.ROD * force @ tangent
         return [y[2], y[3], turn / self.inertia, force[0] / self.SLIDER]
 
     def growth(self, t, y):
-        """Second derivative of the depth, of an approach that speeds up."""
+        """Return the second derivative of the depth, for an approach that speeds up."""
         h, slope = 1e-10, np.array(self.rates(t, y, self.rate(t, y)))
         return (self.rate(t + h, y + h * slope) - self.rate(t - h, y - h * slope)) / (2 * h)
 
     def run(self, until, tolerance=1e-11):
-        """Pieces of the motion, times and speeds of hits. The speed of the approach is the largest one of it."""
+        """Return the pieces of the motion, and times and speeds of hits. The speed of an approach is its largest
+        speed."""
         def event(function, direction):
             def of(t, y):
                 return function(t, y)

@@ -1,17 +1,20 @@
 """Contact over one step, written from the formulas of docs/notes/contact.md alone.
 
-Forces, tangents and discrete gradients to hold the library to: dense numpy, no speed. A pose is (position [m],
-rotation matrix to the world); increments over a step are {displacement, tangent-scaled rotation}. Rows are
-{force [N], moment [N m]} on body A, then on body B, conjugate to those increments; world axes. `y`: a point of A in
-B's frame; a local force is on A, along B's axes. Run it for all checks: reference_contact_checks.py says that work and
-momenta are exact and that tangents are derivatives, reference_contact_laws.py what laws do over many steps.
+Forces, tangents and discrete gradients to test the library against: dense numpy, not optimised. A pose is (position
+[m],
+rotation matrix to the world). Increments over a step are {displacement, tangent-scaled rotation}. Rows are
+{force [N], moment [N m]} on body A, then on body B, in world axes, conjugate to these increments. `y` is a point of A
+in
+B's frame. A local force acts on A, along B's axes. Run this file for all checks: reference_contact_checks.py checks
+that
+work and momenta are exact and that tangents are derivatives, reference_contact_laws.py what laws do over many steps.
 """
 
 import numpy as np
 
 from reference_beam import I3, cayley_tangent, exp, hat, log, tangent_scaled
 
-SHORT = 1e-6  # of a shape's size: motions too short for a correction along them
+SHORT = 1e-6  # relative to a shape's size: shorter motions get no correction along them
 
 
 def mean(a, b):
@@ -22,29 +25,30 @@ def mean(a, b):
 
 
 def norm_gradient(y0, y1):
-    """Of |y|: (D, dD/dy1)."""
+    """Return a discrete gradient of |y| and its derivative: (D, dD/dy1)."""
     size = np.linalg.norm(y0) + np.linalg.norm(y1)
     gradient = (y0 + y1) / size
     return gradient, (np.eye(len(y0)) - np.outer(gradient, y1 / np.linalg.norm(y1))) / size
 
 
 def quotient(function, slope, z0, z1):
-    """Difference quotient; the slope in the middle where there is no difference."""
+    """Return the difference quotient, or the slope in the middle if there is no difference."""
     return (function(z1) - function(z0)) / (z1 - z0) if abs(z1 - z0) > 1e-9 else slope(mean(z0, z1))
 
 
 def sign_mean(p0, p1):
-    """Discrete gradient of |p|, in [-1, 1]."""
+    """Return a discrete gradient of |p|, in [-1, 1]."""
     return (p0 + p1) / max(abs(p0) + abs(p1), 1e-300)
 
 
 def solid_distance(q):
-    """Signed distance of what is bounded by q_i < 0 at right angles."""
+    """Return the signed distance of a solid that is bounded by q_i < 0 at right angles."""
     return np.linalg.norm(np.maximum(q, 0)) + min(max(q), 0)
 
 
 def solid_gradient(q0, q1):
-    """Of solid_distance by q, by the discrete chain rule: never longer than 1."""
+    """Return a discrete gradient of solid_distance with respect to q, by the discrete chain rule. Its length is at most
+    1."""
     u0, u1 = np.maximum(q0, 0), np.maximum(q1, 0)
     size = np.linalg.norm(u0) + np.linalg.norm(u1)
     above = np.array([quotient(lambda z: max(z, 0), lambda z: float(z > 0), a, b) for a, b in zip(q0, q1)])
@@ -65,7 +69,7 @@ def box_gradient(y0, y1, half):
 
 
 def cylinder(y, sizes):
-    """sizes: radius, half length."""
+    """Return the signed distance. sizes: radius, half length."""
     return solid_distance(np.array([np.linalg.norm(y[:2]), abs(y[2])]) - sizes)
 
 
@@ -80,7 +84,7 @@ def beyond(z, half):
 
 
 def capsule(y, half):
-    """Distance of the segment of that half length."""
+    """Return the distance from a segment of this half length."""
     return np.linalg.norm([y[0], y[1], beyond(y[2], half)])
 
 
@@ -91,7 +95,8 @@ def capsule_gradient(y0, y1, half):
 
 
 def gonzalez(gradient, change, step, length):
-    """A middle gradient made exact, gradient . step = change. step: {displacement, turn}; length: of arms [m]."""
+    """Correct a gradient in the middle such that gradient . step = change. step: {displacement, rotation}; length: size
+    of arms [m]."""
     along = np.r_[1, 1, 1, np.full(3, length**2)] * step
     square = step @ along
     return gradient + ((change - gradient @ step) / square * along if square > (SHORT * length) ** 2 else 0)
@@ -101,7 +106,8 @@ def gonzalez(gradient, change, step, length):
 
 
 def energy_quotient(p0, p1, stiffness, depth=np.inf):
-    """(force, its derivative by p1, mean of x): (V1 - V0) / (p1 - p0), V = k x(p)^2 / 2, x of stops.md 2."""
+    """Return (force (V1 - V0) / (p1 - p0), its derivative with respect to p1, mean of x), with V = k x(p)^2 / 2 and x
+    of stops.md 2."""
 
     def x_and_slope(p):
         s2 = (p / depth) ** 2
@@ -116,12 +122,13 @@ def energy_quotient(p0, p1, stiffness, depth=np.inf):
         rho = (x1 - x0) / (p1 - p0) if p1 != p0 else 0
     force = stiffness * rho * mean(x0, x1)
     if abs(p1 - p0) <= 1e-6 * (abs(p0) + abs(p1)):
-        return force, 0.5 * stiffness * slope0 * slope1, mean(x0, x1)  # V''/2 but for x x''
+        return force, 0.5 * stiffness * slope0 * slope1, mean(x0, x1)  # V''/2 without the term x x''
     return force, (stiffness * slope1 * x1 - force) / (p1 - p0), mean(x0, x1)
 
 
 def normal_force(p0, p1, h, stiffness, omega=1.0, damping=0.0, speed=0.0, depth=np.inf):
-    """Mean force over a step and its derivative by p1. speed: of the approach, the memory; damping: d(e)."""
+    """Return the mean force over a step and its derivative with respect to p1. speed: speed of the approach (memory);
+    damping: d(e)."""
     force, slope, x = energy_quotient(p0, p1, stiffness, depth)
     if damping == 0 or h == 0 or force == 0:
         return force, slope
@@ -138,7 +145,8 @@ def normal_force(p0, p1, h, stiffness, omega=1.0, damping=0.0, speed=0.0, depth=
 
 
 def friction_force(memory, slip, normal, force, limit, stiffness):
-    """(new memory, its derivatives by slip, unit normal and normal force); the force on B is stiffness * memory."""
+    """Return (new memory, its derivatives with respect to slip, unit normal and normal force). The force on B is
+    stiffness * memory."""
     whole = memory + slip
     projector = I3 - np.outer(normal, normal)
     trial = projector @ whole
@@ -152,9 +160,9 @@ def friction_force(memory, slip, normal, force, limit, stiffness):
 
 
 def turn_grip(memory, turn, normal, force, spinning, rolling, stiffness):
-    """As friction_force, of what resists to spinning (along the normal) and rolling (across it).
+    """Return the resistance to spinning (along the normal) and rolling (across the normal), as friction_force does.
 
-    spinning, rolling: [m]."""
+    spinning, rolling: coefficients [m]."""
     across = friction_force(memory, turn, normal, force, rolling, stiffness)
     whole, most = memory + turn, spinning * force / stiffness
     size = normal @ whole
@@ -174,20 +182,22 @@ def local(pose_a, pose_b, arm):
 
 
 def arm_rows(begin, end, arm_a, force, couple=np.zeros(3)):
-    """Rows of a force on A at a mean arm and of a couple, world axes; opposite on B through the same point."""
+    """Return the rows of a force on A at a mean arm and of a couple, in world axes. The opposite acts on B through the
+    same point."""
     (a0, b0), (a1, b1) = begin, end
     arm_b = mean(a0[0], a1[0]) + arm_a - mean(b0[0], b1[0])
     return np.concatenate([force, np.cross(arm_a, force) + couple, -force, -np.cross(arm_b, force) - couple])
 
 
 def point_rows(begin, end, arm, force):
-    """Rows of a local force on A's point."""
+    """Return the rows of a local force on A's point."""
     (a0, b0), (a1, b1) = begin, end
     return arm_rows(begin, end, mean(a0[1], a1[1]) @ arm, mean(b0[1], b1[1]) @ force)
 
 
 def local_slopes(end, arm):
-    """Derivatives by {displacement, spin} of A and B: of A's point less B's origin, of y, both at the end."""
+    """Return derivatives with respect to {displacement, spin} of A and B: of A's point minus B's origin, and of y, both
+    at the end."""
     (r_a, axes_a), (r_b, axes_b) = end
     arm_a = axes_a @ arm
     d_point = np.hstack([I3, -hat(arm_a), -I3, np.zeros((3, 3))])
@@ -197,7 +207,8 @@ def local_slopes(end, arm):
 
 
 def point_tangent(begin, end, arm, force, slope):
-    """Derivative of point_rows by {displacement, spin} of A and B at the end; slope: of the local force by y1."""
+    """Return the derivative of point_rows with respect to {displacement, spin} of A and B at the end. slope: derivative
+    of the local force by y1."""
     (a0, b0), (a1, b1) = begin, end
     axes = mean(b0[1], b1[1])
     f, arm_a = axes @ force, mean(a0[1], a1[1]) @ arm
@@ -211,8 +222,8 @@ def point_tangent(begin, end, arm, force, slope):
 
 
 def shell_force(y0, y1, radius, law):
-    """A point inside a spherical shell of B, p = |y| - radius, with friction: local force, its slope by y1, and
-    memory and dissipation. law: h, k, omega, d, speed, memory, mu, kt."""
+    """Return local force, its derivative by y1, memory and dissipation for a point inside a spherical shell of B with
+    friction. The penetration is p = |y| - radius. law: h, k, omega, d, speed, memory, mu, kt."""
     gradient, d_gradient = norm_gradient(y0, y1)
     p0, p1 = np.linalg.norm(y0) - radius, np.linalg.norm(y1) - radius
     force, slope = normal_force(p0, p1, law["h"], law["k"], law["omega"], law["d"], law["speed"])
@@ -229,7 +240,8 @@ def shell_force(y0, y1, radius, law):
 
 
 def rolling_slip(begin, end, arm_a):
-    """Slip of A's surface over B's at a mean arm (world axes), in the mean of B's axes: conjugate to arm_rows."""
+    """Return the slip of A's surface over B's at a mean arm (world axes), in the mean of B's axes. It is conjugate to
+    arm_rows."""
     (a0, b0), (a1, b1) = begin, end
     turn = tangent_scaled(a1[1] @ a0[1].T) - tangent_scaled(b1[1] @ b0[1].T)
     origin = local(a1, b1, np.zeros(3)) - local(a0, b0, np.zeros(3))
@@ -240,7 +252,7 @@ def rolling_slip(begin, end, arm_a):
 
 
 def relative_turn(begin, end):
-    """psi: Q1 = cay(psi) Q0 with Q = Lambda_B^T Lambda_A, and N with psi = N (omega_A - omega_B)."""
+    """Return psi, where Q1 = cay(psi) Q0 with Q = Lambda_B^T Lambda_A, and N with psi = N (omega_A - omega_B)."""
     (a0, b0), (a1, b1) = begin, end
     wa, wb = tangent_scaled(a1[1] @ a0[1].T), tangent_scaled(b1[1] @ b0[1].T)
     n = b0[1].T @ (I3 - 0.5 * hat(wb)) / (1 + 0.25 * wa @ wb)
@@ -248,7 +260,8 @@ def relative_turn(begin, end):
 
 
 def pose_gradient(begin_relative, end_relative, psi, function, length):
-    """Of function(y, Q) -> (value, gradient by y and by a spin of Q): by {change of y, psi}. length: [m] of arms."""
+    """Return the discrete gradient by {change of y, psi} of function(y, Q) -> (value, gradient by y and by a spin of
+    Q). length: size of arms [m]."""
     (y0, q0), (y1, q1) = begin_relative, end_relative
     half = exp(0.5 * log(q1 @ q0.T)) @ q0
     change = function(y1, q1)[0] - function(y0, q0)[0]
@@ -256,13 +269,13 @@ def pose_gradient(begin_relative, end_relative, psi, function, length):
 
 
 def pose_rows(begin, end, action):
-    """Rows of {local force through A's origin, local couple conjugate to psi}."""
+    """Return the rows of {local force through A's origin, local couple conjugate to psi}."""
     n = relative_turn(begin, end)[1]
     return arm_rows(begin, end, np.zeros(3), mean(begin[1][1], end[1][1]) @ action[:3], n.T @ action[3:])
 
 
 def pose_tangent(begin, end, action, slope):
-    """Derivative of pose_rows; slope: of the action by {y1, spin of Q1}, both in B's frame."""
+    """Return the derivative of pose_rows. slope: derivative of the action by {y1, spin of Q1}, both in B's frame."""
     (a0, b0), (a1, b1) = begin, end
     wa, wb = tangent_scaled(a1[1] @ a0[1].T), tangent_scaled(b1[1] @ b0[1].T)
     n = relative_turn(begin, end)[1]
@@ -287,7 +300,7 @@ def pose_tangent(begin, end, action, slope):
 
 def edges_gap(y, q, edge_a=(np.array([0.3, 0.2, 0.1]), np.array([1.0, 0, 0])),
               edge_b=(np.array([0.1, -0.2, 0.4]), np.array([0.0, 1, 0]))):
-    """Distance of two lines along their common normal: (value, gradient by y and spin of Q)."""
+    """Return the distance of two lines along their common normal: (value, gradient by y and spin of Q)."""
     (p, s), (o, t) = edge_a, edge_b
     along, arm = q @ s, q @ p
     cross = np.cross(along, t)
@@ -298,12 +311,12 @@ def edges_gap(y, q, edge_a=(np.array([0.3, 0.2, 0.1]), np.array([1.0, 0, 0])),
 
 
 def rim_gap(y, q, normal, radius, axis):
-    """Height of a disc's lowest point over the plane normal . y = 0 of B."""
+    """Return the height of a disc's lowest point over the plane normal . y = 0 of B."""
     return normal @ y - radius * np.linalg.norm(np.cross(normal, q @ axis))
 
 
 def rim_gradient(begin_relative, end_relative, normal, radius, axis):
-    """Of rim_gap by {change of y, psi}, exact without a correction."""
+    """Return the discrete gradient of rim_gap by {change of y, psi}. It is exact without a correction."""
     a0, a1 = (q @ axis for _, q in (begin_relative, end_relative))
     size = sum(np.linalg.norm(np.cross(normal, a)) for a in (a0, a1))
     return np.concatenate([normal, radius * normal @ (a0 + a1) / size * np.cross(mean(a0, a1), normal)])
@@ -313,7 +326,8 @@ def rim_gradient(begin_relative, end_relative, normal, radius, axis):
 
 
 def closest(curve_a, curve_b, nodes_a, nodes_b, s=0.0, t=0.0):
-    """Parameters of the nearest points, by Newton's method; curve(s): weights of the nodes, two derivatives."""
+    """Return the parameters of the nearest points, by Newton's method. curve(s): weights of the nodes and two
+    derivatives."""
     for _ in range(60):
         a, b = [w @ nodes_a for w in curve_a(s)], [w @ nodes_b for w in curve_b(t)]
         d = a[0] - b[0]
@@ -327,9 +341,10 @@ def closest(curve_a, curve_b, nodes_a, nodes_b, s=0.0, t=0.0):
 
 
 def curves_gradient(weights_a, weights_b, begin, end, turns, change, length):
-    """(local force, couple; world axes) whose work per unit of tension is the change of the distance.
+    """Return (local force, couple), in world axes, whose work per unit of tension is the change of the distance.
 
-    weights: at the middle parameters; begin, end: (nodes of A, nodes of B); turns: of the nodes of A and of B.
+    weights: at the middle parameters; begin, end: (nodes of A, nodes of B); turns: rotations of the nodes of A and of
+    B.
     """
     d0, d1 = (weights_a @ nodes[0] - weights_b @ nodes[1] for nodes in (begin, end))
     turn_a, turn_b = weights_a @ turns[0], weights_b @ turns[1]
@@ -339,7 +354,8 @@ def curves_gradient(weights_a, weights_b, begin, end, turns, change, length):
 
 
 def curves_rows(weights_a, weights_b, begin, end, action):
-    """{force, moment} on each node of A and of B; the force on A through its middle point, and a couple."""
+    """Return {force, moment} on each node of A and of B. The force on A acts through its middle point, with a
+    couple."""
     arm = mean(*(weights_a @ nodes[0] - weights_b @ nodes[1] for nodes in (begin, end)))
     on_a = np.concatenate([action[:3], action[3:]])
     on_b = -np.concatenate([action[:3], np.cross(arm, action[:3]) + action[3:]])
@@ -347,9 +363,12 @@ def curves_rows(weights_a, weights_b, begin, end, action):
 
 
 def curves_tangent(weights_a, weights_b, begin, end, turns, change, slope, length):
-    """Derivative of curves_rows(curves_gradient()) at tension 1, by {displacement, spin} of all nodes at the end.
+    """Return the derivative of curves_rows(curves_gradient()) at tension 1, by {displacement, spin} of all nodes at the
+    end.
 
-    slope: of the change by the same; weights are held, as they are foreseen. Rows and columns: nodes of A, then of B.
+    slope: derivative of the change by the same; the weights are predicted, and constant here. Rows and columns: nodes
+    of A,
+    then of B.
     """
     d0, d1 = (weights_a @ nodes[0] - weights_b @ nodes[1] for nodes in (begin, end))
     d, size, along1 = mean(d0, d1), np.linalg.norm(d0) + np.linalg.norm(d1), d1 / np.linalg.norm(d1)
@@ -377,7 +396,7 @@ def curves_tangent(weights_a, weights_b, begin, end, turns, change, slope, lengt
 
 
 def plane_force(y0, y1, normal, law):
-    """A point of A over the half-space normal . y < 0 of B: as shell_force."""
+    """Return the same as shell_force, for a point of A over the half-space normal . y < 0 of B."""
     p0, p1, kt = -normal @ y0, -normal @ y1, law["kt"]
     force, slope = normal_force(p0, p1, law["h"], law["k"], law["omega"], law["d"], law["speed"])
     memory, by_slip, _, by_force = friction_force(law["memory"], y1 - y0, normal, force, law["mu"], kt)

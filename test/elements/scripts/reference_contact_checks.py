@@ -1,4 +1,4 @@
-"""Checks that contact's formulas are exact: work, momenta, tangents. Formulas: reference_contact.py."""
+"""Checks that the formulas of contact are exact: work, momenta, tangents. The formulas are in reference_contact.py."""
 
 import numpy as np
 
@@ -9,18 +9,18 @@ from reference_contact import (arm_rows, closest, curves_gradient, curves_rows, 
                                rolling_slip, shell_force)
 
 class Body:
-    """A rigid body in steps of the energy-momentum rule; material spin."""
+    """A rigid body in steps of the energy-momentum rule. The spin is material."""
 
     def __init__(self, mass, inertia, pose, velocity, spin):
         self.mass, self.inertia, self.pose, self.velocity, self.spin = mass, np.diag(inertia), pose, velocity, spin
 
     def end(self, pose, h):
-        """Velocity and material spin at the end of a step."""
+        """Return velocity and material spin at the end of a step."""
         turn = tangent_scaled(pose[1] @ self.pose[1].T)
         return 2 * (pose[0] - self.pose[0]) / h - self.velocity, 2 * self.pose[1].T @ turn / h - self.spin
 
     def balance(self, pose, h):
-        """Rates of the momenta, and their derivatives by {displacement, spin}."""
+        """Return the rates of the momenta, and their derivatives by {displacement, spin}."""
         velocity, spin = self.end(pose, h)
         turn = tangent_scaled(pose[1] @ self.pose[1].T)
         rows = np.concatenate([self.mass * (velocity - self.velocity),
@@ -32,14 +32,14 @@ class Body:
         return rows, slope
 
     def totals(self):
-        """Energy, momentum, angular momentum."""
+        """Return energy, momentum, angular momentum."""
         kinetic = 0.5 * self.mass * self.velocity @ self.velocity + 0.5 * self.spin @ self.inertia @ self.spin
         momentum = self.mass * self.velocity
         return kinetic, momentum, np.cross(self.pose[0], momentum) + self.pose[1] @ self.inertia @ self.spin
 
 
 class Contact:
-    """A point of one body against a function of another one, or of the world (None), and its memory."""
+    """Contact of a point of one body with a function of another body, or of the world (None), with its memory."""
 
     def __init__(self, first, second, arm, force, law):
         self.first, self.second, self.arm, self.force = first, second, arm, force
@@ -50,7 +50,7 @@ class Contact:
 
 
 def step(bodies, contacts, h, gravity=np.zeros(3)):
-    """One step of all by Newton's method; returns what was lost, iterations, halved updates."""
+    """Make one step of all bodies by Newton's method. Return the dissipation, iterations, and halved updates."""
     count, halved = len(bodies), 0
     begin = [b.pose for b in bodies]
     end = [(b.pose[0] + h * b.velocity, cayley(h * b.pose[1] @ b.spin) @ b.pose[1]) for b in bodies]
@@ -77,7 +77,8 @@ def step(bodies, contacts, h, gravity=np.zeros(3)):
     here = residual(end)
     for iteration in range(60):
         update = -np.linalg.solve(here[1], here[0]).reshape(count, 6)
-        for part in 0.5 ** np.arange(8):  # chatter of touching and not touching ends on a line search
+        # A line search, because contacts may alternate between touching and not touching
+        for part in 0.5 ** np.arange(8):
             trial = [(p[0] + part * u[:3], exp(part * u[3:]) @ p[1]) for p, u in zip(end, update)]
             there = residual(trial)
             if np.linalg.norm(there[0]) < np.linalg.norm(here[0]) or abs(update).max() < 1e-9:
@@ -99,7 +100,8 @@ def total(bodies):
 
 
 def check_bodies(h, stiffness, damping, mu, steps):
-    """Two free bodies in flight, points of the first in a spherical shell of the second: worst errors."""
+    """Check two free bodies in flight, where points of the first are in a spherical shell of the second: print the
+    largest errors."""
     rng = np.random.default_rng(3)
     bodies = [Body(1.0, [0.02, 0.03, 0.04], (np.zeros(3), I3), np.array([1.0, 0.3, -0.2]), rng.normal(size=3) * 3),
               Body(2.0, [0.5, 0.6, 0.8], (np.array([0.1, 0, 0]), exp(rng.normal(size=3))), np.zeros(3),
@@ -134,14 +136,14 @@ def motions(begin, end):
 
 
 def moment(begin, end, rows):
-    """Total force and moment about the origin."""
+    """Return total force and moment about the origin."""
     arms = [mean(b[0], e[0]) for b, e in zip(begin, end)]
     return np.concatenate([rows[:3] + rows[6:9], np.cross(arms[0], rows[:3]) + rows[3:6] + np.cross(
         arms[1], rows[6:9]) + rows[9:]])
 
 
 def by_end(rows, end, h=1e-6):
-    """Derivative of rows(end) by {displacement, spin} of both, by differences."""
+    """Return the derivative of rows(end) by {displacement, spin} of both bodies, by differences."""
 
     def at(k, sign):
         d = np.zeros(12)
@@ -184,7 +186,7 @@ def check_maps():
         change = edges_gap(*relative(end))[0] - edges_gap(*relative(begin))[0]
         numeric = np.zeros((6, 6))
         fixed = gradient(end)
-        for k in range(6):  # of the action by {y1, spin of Q1}: moves A alone, in B's axes
+        for k in range(6):  # action by {y1, spin of Q1}: moves A alone, in B's axes
             d = np.zeros(6)
             d[k] = 1e-6
             ends = []
@@ -221,13 +223,14 @@ def check_shapes():
 
 
 def quadratic(s):
-    """Weights of three nodes at -1, 0, 1 and their derivatives."""
+    """Return weights of three nodes at -1, 0, 1 and their derivatives."""
     return (np.array([0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)]), np.array([s - 0.5, -2 * s, s + 0.5]),
             np.array([1.0, -2, 1]))
 
 
 def curves_case(size, turn):
-    """Nodes of two curves before and after a turn of both and a relative motion; turns of their nodes."""
+    """Return the nodes of two curves before and after a common rotation and a relative motion, and the rotations of
+    their nodes."""
     a0, b0 = np.array([[-1, 0, 0], [0, 0.1, 0.05], [1, 0, 0]]), np.array([[0, -1, 0.3], [0.1, 0, 0.25], [0, 1, 0.35]])
     rng = np.random.default_rng(7)
     whole = cayley(turn * np.array([0.3, 0.5, -0.4]))
@@ -236,7 +239,7 @@ def curves_case(size, turn):
 
 
 def nearest(nodes):
-    """Parameters, distance, its derivative by {displacement, spin} of all nodes."""
+    """Return parameters, distance, and its derivative by {displacement, spin} of all nodes."""
     s = closest(quadratic, quadratic, *nodes)
     weights = [quadratic(x)[0] for x in s]
     d = weights[0] @ nodes[0] - weights[1] @ nodes[1]
@@ -279,7 +282,7 @@ def check_curves():
 
 
 def check_curves_friction():
-    """Between curves: the memory in world axes is turned by half of B's turn before and after."""
+    """Check friction between curves: the memory in world axes is rotated by half of B's rotation before and after."""
     rng, least, moments = np.random.default_rng(0), np.inf, 0.0
     for _ in range(300):
         begin, end, turns = curves_case(10 ** rng.uniform(-4, -0.5), rng.uniform(0, 1.5))
@@ -307,7 +310,7 @@ def check_curves_friction():
 
 
 def check_turn_grip():
-    """Of spinning and rolling: derivatives, and that nothing is gained, whatever the memory is."""
+    """Check resistance to spinning and rolling: derivatives, and that no energy is gained for any memory."""
     rng, worst, least = np.random.default_rng(4), 0.0, np.inf
     for case in range(2000):
         memory, turn, normal = rng.normal(size=(3, 3))
@@ -318,7 +321,7 @@ def check_turn_grip():
         if case > 200:
             continue
         h, columns = 1e-6, []
-        for k in range(7):  # of turn, normal, force
+        for k in range(7):  # by turn, normal, force
             d = h * np.eye(7)[k]
             columns.append(sum(sign * contact.turn_grip(memory, turn + sign * d[:3], normal + sign * d[3:6],
                                                         force + sign * d[6], *law[0], law[1])[0] for sign in (1, -1)))
@@ -328,8 +331,8 @@ def check_turn_grip():
 
 
 def let_out(restitution_damping, gravity, h=1e-3, inside=0.05):
-    """A mass that starts inside of a floor: most of its speed over inside omega / 100, most that it hangs back from
-    inside e^(-omega t / 100) after a tenth of a second, and the error of its account."""
+    """Release a mass that starts inside of a floor. Return its largest speed over inside omega / 100, its largest
+    deviation from inside e^(-omega t / 100) after a tenth of a second, and the error of its energy account."""
     omega = np.pi / (10 * h)
     stiffness, start, memory = omega**2, inside, 0.0
     z, v, account, fastest, behind = -inside, 0.0, 0.0, 0.0, 0.0
@@ -348,8 +351,8 @@ def let_out(restitution_damping, gravity, h=1e-3, inside=0.05):
             z1 += change
             if abs(change) < 1e-17:
                 break
-        account -= force * (start - left)  # work from outside
-        account += force * (z + start - z1 - left) - stored(z1, left) + stored(z, start)  # what the damper takes
+        account -= force * (start - left)  # work of the decaying offset
+        account += force * (z + start - z1 - left) - stored(z1, left) + stored(z, start)  # dissipation of the damper
         v = 2 * (z1 - z) / h - v
         z, start, memory = z1, left, speed if -z1 - left > 0 else 0.0
         fastest = max(fastest, v)

@@ -1,4 +1,5 @@
-"""What contact's laws do over many steps: restitution, friction, orders, beams. Formulas: reference_contact.py."""
+"""Check the laws of contact over many steps: restitution, friction, orders of convergence, beams. The formulas are in
+reference_contact.py."""
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from reference_contact_checks import Body, Contact, step, total
 
 
 def damping_of(restitution):
-    """d of the restitution: (1 + d) / (1 - e d) = exp(d (1 + e)), by bisection in (0, 1/e)."""
+    """Return d for a restitution e: (1 + d) / (1 - e d) = exp(d (1 + e)), by bisection in (0, 1/e)."""
     low, high = 1e-9, (1 - 1e-15) / restitution
     for _ in range(200):
         d = 0.5 * (low + high)
@@ -20,7 +21,7 @@ def damping_of(restitution):
 
 
 def solved(rate_of_change, low, high):
-    """Zero of an increasing function."""
+    """Return the zero of an increasing function."""
     for _ in range(200):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if rate_of_change(middle) > 0 else (middle, high)
@@ -30,7 +31,8 @@ def solved(rate_of_change, low, high):
 
 
 class Ball:
-    """A mass and a half-space: penetration p, rate v. Stiffness is that of mass 1 and omega; mass: in truth."""
+    """A mass over a half-space: penetration p, rate v. The stiffness belongs to mass 1 and omega; mass is the true
+    mass."""
 
     def __init__(self, restitution, omega=1.0, gravity=0.0, depth=np.inf, mass=1.0):
         self.d = damping_of(restitution) if restitution < 1 else 0.0
@@ -43,7 +45,7 @@ class Ball:
         return self.v if self.receding or self.p <= 0 else max(self.speed, self.v)
 
     def trial(self, h):
-        """End of a step, whether it is short enough."""
+        """Return the end of a step, and whether the step is short enough."""
         speed, k = self.memory(), self.omega**2
 
         def balance(change):
@@ -64,7 +66,7 @@ class Ball:
         return p, v, speed, (x0 == x1 == 0) or angle <= np.pi / 9 or part <= 0.25 * whole
 
     def run(self, h, until, most=22):
-        """Ratios of speeds at each hit, and steps, halvings, largest penetration."""
+        """Return the ratio of speeds at each hit, and numbers of steps and halvings, and the largest penetration."""
         level = place = steps = halvings = 0
         time, ratios, deepest, approach = 0.0, [], 0.0, None
         while time < until:
@@ -100,7 +102,7 @@ def check_slopes():
 
 
 def check_losses():
-    """No step gains, whatever happens in it."""
+    """Check that no step gains energy."""
     rng, least = np.random.default_rng(6), np.inf
     for _ in range(10000):
         p0, p1, depth = rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6), rng.choice([0.7, np.inf])
@@ -173,7 +175,7 @@ def on_plane(first, second, arm, height, law):
 
 
 def check_flat():
-    """A box that falls flat, or on a corner: ratio of the speeds of what touches."""
+    """Print the restitution of a box that falls flat, or on a corner."""
     size, h = (0.2, 0.2, 0.1), 1e-4
     k = (np.pi / (10 * h)) ** 2 / 4
     for name, rotation in (("flat", I3), ("on a corner", exp(np.array([0.5, 0.4, 0])))):
@@ -215,7 +217,7 @@ def check_incline(steps):
 
 
 def check_rolling():
-    """A solid sphere down an incline, from rest."""
+    """Check a solid sphere that rolls down an incline from rest."""
     h, g, mu, radius, angle = 1e-3, 9.81, 0.5, 0.1, 0.5
     k = (np.pi / (10 * h)) ** 2
     body = Body(1.0, [0.4 * radius**2] * 3, (np.array([0, 0, radius - g * np.cos(angle) / k]), I3), np.zeros(3),
@@ -287,7 +289,7 @@ def order_of(run, steps):
 
 
 def pressed(n):
-    """A damped ball that stays in contact, at time 3."""
+    """Return the state of a damped ball that stays in contact, at time 3."""
     ball = Ball(0.5, 1.0, 1.0)
     ball.p, ball.v = 1.3, 0.0
     for _ in range(n):
@@ -296,7 +298,8 @@ def pressed(n):
 
 
 def bounced(n, place):
-    """Error of an elastic ball behind a bounce, against the closed form; place: of the start within a step."""
+    """Return the error of an elastic ball after a bounce, against the closed form. place: position of the start within
+    a step."""
     omega, until = 30.0, 1.8
     ball, h = Ball(1.0, omega, 1.0), until / n
     ball.p = start = -0.5 - place * h
@@ -309,7 +312,7 @@ def bounced(n, place):
 
 
 def slid(n, velocity=(0.0, 2.0), stiffness=1e3, until=0.7, loaded=True):
-    """A mass on a spring that slides over a plane, unit normal force, mu = 0.3."""
+    """Return the state of a mass on a spring that slides over a plane, with unit normal force and mu = 0.3."""
     x, v, h = np.array([1.0, 0, 0]), np.array([*velocity, 0]), until / n
     memory = 0.3 / stiffness * v / np.linalg.norm(v) if loaded else np.zeros(3)
     for _ in range(n):
@@ -335,13 +338,13 @@ def check_orders():
 
 
 def check_tubes():
-    """Two straight tubes of R = 2 radii that cross at an angle: the line's energy and its closed form."""
+    """Compare the energy of two straight crossing tubes of R = 2 radii with its closed form."""
     radii, p = 0.02, 2e-4
     for angle in (np.pi / 2, 0.3, 0.05):
         half = np.sqrt(2 * radii * p) / np.sin(angle)
         exact = 8 / 15 * p * p * half
         results = []
-        for spacing in (2.0, 1.0, 0.5, 0.25):  # of stations, in halves of the contact's length
+        for spacing in (2.0, 1.0, 0.5, 0.25):  # spacing of the stations, in halves of the contact's length
             errors = []
             for shift in np.linspace(0, 1, 21):
                 s = (np.arange(-12, 13) + shift) * spacing * half
@@ -349,7 +352,8 @@ def check_tubes():
                 errors.append(np.sum(0.5 * np.maximum(radii - distance, 0) ** 2) * spacing * half / exact - 1)
             results.append(f"{min(errors):.3f} to {max(errors):.3f}")
         print(f"tubes at {angle:.2f}: half length {half / radii:.2f} R; stations over closed form - 1: {results}")
-    exact, errors = 8 / 15, []  # a parabola of penetration, Gauss points in elements that do not end where it does
+    # A parabola of penetration, with Gauss points in elements whose ends are not the parabola's
+    exact, errors = 8 / 15, []
     for count in (4, 8, 16, 32, 64, 128):
         worst = 0.0
         for shift in np.linspace(0, 1, 40):

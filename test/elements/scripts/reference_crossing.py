@@ -1,11 +1,12 @@
-"""Two crossing beams of a published example, and what it tends to with finer meshes: docs/notes/contact.md 6.
+"""Two crossing beams of a published example, and the limit for finer meshes: docs/notes/contact.md 6.
 
 The example is `beam3_line2_genalpha_contact_penalty_twocrossedbeams` of the tests of 4C Multiphysics, the program of
-Meier, Popp and Wall: a beam that is built in at both ends, and a straight one that is moved across it, slowly beside
-their vibrations. It names the end of the motion and where node 8 is then. Here: the least energy of its elements, which
-are straight and have Reissner's strains at one point each, and its penalty, of each element with its own nearest place
-where that is inside of it. For the limit: the same penalty per length at nodes, over about one radius. Units are those
-of the example.
+Meier, Popp and Wall. One beam is clamped at both ends. A straight one is moved across it, slowly compared with their
+vibrations. The example gives the end of the motion, and the position of node 8 there. This file finds it as the minimum
+of energy of the same elements, which are straight, with Reissner's strains at one point each. The penalty acts at the
+nearest point of each element, if this point is inside of the element. For the limit, the same penalty per length acts
+at
+nodes, over about one radius. Units are those of the example.
 """
 
 import numpy as np
@@ -13,17 +14,17 @@ from scipy.spatial.transform import Rotation
 
 LENGTH, RADIUS, PENALTY = 5.0, 0.3, 1e6
 FROM, TO = np.array([-2.5, 0, 0]), np.array([1.830127018922193, -2.5, 0])
-ACROSS = np.array([0.8550503583141718, 2.349231551964771, 0])  # along the upper beam
-BEGIN, WAY = np.array([0, 0, 1.32]), np.array([-0.4, 0, -2.5])  # a place of its line, and what it is moved by
+ACROSS = np.array([0.8550503583141718, 2.349231551964771, 0])  # direction of the upper beam
+BEGIN, WAY = np.array([0, 0, 1.32]), np.array([-0.4, 0, -2.5])  # a point of the upper beam's line, and its displacement
 AREA, SECOND_MOMENT = 0.282743, 0.00636173
 STIFFNESS = np.array([1e5 * AREA, 5e4 * 1.1 * AREA, 5e4 * 1.1 * AREA,
                       5e4 * 0.0127235, 1e5 * SECOND_MOMENT, 1e5 * SECOND_MOMENT])
 PUBLISHED = np.array([-2.35320636690075330e-01, 8.03793046908387043e-02, -1.64147761604003972e00])
-PLACE = 7 / 19  # of node 8 along the beam
+PLACE = 7 / 19  # position of node 8 along the beam
 
 
 class LowerBeam:
-    """The lower beam in equilibrium, as minimum of a sum of squares."""
+    """The lower beam in equilibrium, as the minimum of a sum of squares."""
 
     def __init__(self, elements, per_length=None):
         self.elements, self.size, self.per_length = elements, LENGTH / elements, per_length
@@ -31,7 +32,7 @@ class LowerBeam:
         self.start = FROM + np.outer(np.linspace(0, 1, elements + 1), TO - FROM)
         self.frame = Rotation.from_matrix(np.column_stack([along, np.cross([0, 0, 1], along), [0, 0, 1]]))
         side = np.cross(ACROSS / np.linalg.norm(ACROSS), [0, 0, 1])
-        self.plane = np.array([side, [0, 0, 1]])  # across the upper beam
+        self.plane = np.array([side, [0, 0, 1]])  # axes across the upper beam
         self.unknowns = np.zeros((elements - 1, 6))  # displacements and rotation vectors of inner nodes
 
     def nodes(self, unknowns):
@@ -51,7 +52,7 @@ class LowerBeam:
         return np.where((at >= 0) & (at <= 1), 2 * RADIUS - distance, 0)
 
     def squares(self, unknowns, part):
-        """Of which half of the sum is the energy: a row of seven for each element."""
+        """Return terms whose sum of squares is twice the energy: a row of seven for each element."""
         places, frames = self.nodes(unknowns)
         turned = (frames[:-1].inv() * frames[1:]).as_rotvec()
         middle = frames[:-1] * Rotation.from_rotvec(0.5 * turned)
@@ -62,7 +63,7 @@ class LowerBeam:
         return np.c_[strains, pushed]
 
     def groups(self):
-        """Unknowns whose neighbours do not meet: (nodes, number of the unknown)."""
+        """Return groups of unknowns that share no element: (nodes, number of the unknown)."""
         return [(np.arange(first, self.elements - 1, 3), k) for first in range(3) for k in range(6)]
 
     def jacobian(self, unknowns, part, step=1e-5):

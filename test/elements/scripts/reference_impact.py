@@ -1,5 +1,7 @@
-"""A ball hits a cantilever from the side (Timoshenko's problem): modes of Euler and Bernoulli, the hardening spring of
-docs/notes/stops.md 2 between them, no damping. Prints what test/reference/line_contact_test.cpp compares with.
+"""A ball hits a cantilever from the side (Timoshenko's problem).
+
+The beam has modes of Euler and Bernoulli without damping. The contact is the hardening spring of docs/notes/stops.md 2.
+Prints the numbers that test/reference/line_contact_test.cpp compares with.
 """
 
 import numpy as np
@@ -11,7 +13,7 @@ MASS, SPEED, GAP, STIFFNESS, DEPTH = 0.05, 0.2, 1e-4, 1e5, 5e-4
 
 
 def modes(count):
-    """Angular frequencies, shapes at PLACE; all modal masses are that of the beam."""
+    """Return angular frequencies, and shapes at PLACE. All modal masses are that of the beam."""
     area, inertia = np.pi * RADIUS**2, np.pi * RADIUS**4 / 4
     middles = [(i + 0.5) * np.pi for i in range(count)]
     b = np.array([brentq(lambda x: np.cos(x) + 1 / np.cosh(x), a - 0.6 + 0.5 * (a < 2), a + 0.6) for a in middles])
@@ -26,7 +28,7 @@ def push(p):
 
 
 def run(count):
-    """Speed of the ball behind the hit [m/s], deflection of the beam there after 0.01 s [m]."""
+    """Return the speed of the ball after the hit [m/s], and the beam's deflection there after 0.01 s [m]."""
     frequencies, shapes, beam_mass = modes(count)
 
     def rates(_, y):

@@ -1,9 +1,9 @@
-"""Two equal strands wound round each other: the closed form of docs/notes/contact.md 6, and its checks.
+"""Two equal strands wound around each other: the closed form of docs/notes/contact.md 6, and its checks.
 
-Uniform ply of Thompson, van der Heijden and Neukirch (2002), without friction: both centrelines are helices of radius
-r [m], opposite each other; b: angle of their tangents with the axis. For strands that stretch and shear, too, with a
-linear law: the section's angle then is beta, the line is `stretch` times as long, and `turn` is by how much the helix
-turns about the axis per length of the undeformed line [1/m]. Forces in N, moments in N m, of one strand.
+The form is the uniform ply of Thompson, van der Heijden and Neukirch (2002), without friction. Both centrelines are
+helices of radius r [m], opposite each other; b is the angle of their tangents with the axis. Strands may also stretch
+and shear by a linear law. Then the section's angle is beta, the line is longer by the factor `stretch`, and the helix
+turns about the axis by `turn` per length of the undeformed line [1/m]. Forces are in N, moments in N m, of one strand.
 """
 
 import numpy as np
@@ -11,11 +11,11 @@ from scipy.linalg import expm
 
 from reference_beam import hat
 
-STIFF = 1e12  # of what neither stretches nor shears, against B / r^2
+STIFF = 1e12  # stiffness of strands that neither stretch nor shear, relative to B / r^2
 
 
 def ply(r, b, twist, axial, bending, torsion, stretching=None, shearing=None):
-    """axial: force along the axis. twist: of the section, per length [1/m]. Returns a dict."""
+    """Return a dict of the results. axial: force along the axis. twist: twist of the section per length [1/m]."""
     stretching = stretching or STIFF * bending / r**2
     shearing = shearing or STIFF * bending / r**2
     stretch, beta = 1.0, b
@@ -41,9 +41,10 @@ def ply(r, b, twist, axial, bending, torsion, stretching=None, shearing=None):
 
 
 def check_virtual_work(random):
-    """Energy of a length of a ply by b and r: what does work on the turn is the moment, and on r the contact force."""
+    """Compare derivatives of a ply's energy per length by b and r: the moment works on the rotation, the contact force
+    on r."""
     r, bending, torsion, axial = random.uniform(0.5, 2, 4)
-    b, more = random.uniform(0.1, 0.7), random.uniform(-0.3, 0.3)  # twist beside that of sections that follow the helix
+    b, more = random.uniform(0.1, 0.7), random.uniform(-0.3, 0.3)  # twist in excess of sections that follow the helix
 
     def potential(r, b, moment):
         curvature, twist = np.sin(b) ** 2 / r, np.sin(b) * np.cos(b) / r + more
@@ -52,21 +53,21 @@ def check_virtual_work(random):
 
     h = 1e-5
     by_b = (potential(r, b + h, 0) - potential(r, b - h, 0)) / (2 * h)
-    moment = by_b * r / np.cos(b)  # no change with b
+    moment = by_b * r / np.cos(b)  # such that the potential is stationary in b
     contact = (potential(r + h, b, moment) - potential(r - h, b, moment)) / (2 * h)
     form = ply(r, b, np.sin(b) * np.cos(b) / r + more, axial, bending, torsion)
     return max(abs(moment / form["moment"] - 1), abs(contact / form["contact"] - 1))
 
 
 def check_balance(random):
-    """Balances of a strand that is built step by step, with strains of it as it stands: largest residual."""
+    """Check the balances of a strand that is built step by step with its own strains: return the largest residual."""
     r, bending, torsion, axial = random.uniform(0.5, 2, 4)
     stretching, shearing = random.uniform(10, 50, 2)
     b, twist = random.uniform(0.1, 0.7), random.uniform(-0.3, 0.3)
     form = ply(r, b, twist, axial, bending, torsion, stretching, shearing)
     beta = form["beta"]
     turn, pitch = form["turn"], form["stretch"] * np.cos(b)
-    more = twist - turn * np.cos(beta)  # by which sections turn against the helix
+    more = twist - turn * np.cos(beta)  # rotation of sections relative to the helix
 
     def pose(s):
         radial, around, along = expm(hat([0, 0, turn * s])).T

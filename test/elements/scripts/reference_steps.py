@@ -2,7 +2,7 @@
 """Residuals of one random element step per scheme, by the reference implementation beside this file.
 
 Usage: reference_steps.py > ../reference_steps.csv      writes the table that reference_steps_test.cpp reads
-       reference_steps.py --check TABLE                 computes it anew; exit status 1 if it is not that of the file
+       reference_steps.py --check TABLE                 computes it again; exit status 1 if the file differs
 
 Each line of the table is "nodes,key,values...": all inputs of the step and the residual {f_i, phi_i} of every scheme.
 Quaternions are w, x, y, z.
@@ -18,8 +18,8 @@ from reference_beam import (Element, Step, beta1, energy_momentum, exp, material
 STEP = 0.3
 DAMPING = 0.05
 ALPHA = -0.1
-# Round-off of two machines over some hundred operations; the multiplier's numerator cancels three digits of the
-# stresses.
+# Round-off of some hundred operations on different machines. The multiplier's numerator loses three digits of the
+# stresses by cancellation.
 TOLERANCE = 1e-12
 
 
@@ -36,7 +36,7 @@ def positive_definite(rng, size):
 
 
 def case(nodes):
-    """Ordered (key, values) of an element with so many nodes."""
+    """Return ordered (key, values) of an element with this number of nodes."""
     rng = np.random.default_rng(nodes)
 
     def vectors(size, count=nodes):
@@ -98,7 +98,7 @@ def write():
 
 
 def check(path):
-    """What differs between the table in the file and the one computed anew."""
+    """Return the differences between the table in the file and the table that is computed again."""
     with open(path, encoding="utf-8") as file:
         lines = [line.split(",") for line in file if not line.startswith("#")]
     found = {(nodes, key): np.array(values, dtype=float) for nodes, key, *values in lines}

@@ -1,3 +1,4 @@
+// Tests the histogram of durations from which the node reports quantiles.
 #include "ros/duration_histogram.h"
 
 #include <gtest/gtest.h>

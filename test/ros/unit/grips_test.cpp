@@ -1,4 +1,4 @@
-// Joints that press with a limited effort.
+// Tests Grips, joints that press with a limited effort.
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/scene_description.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStop = 0.05, kMaxEffort = 12;  ///< [m], [N]
 
-/// A finger that has a stop.
+/// A finger with a stop.
 scene::SceneDescription finger(double kp, double ki) {
   scene::SceneBuilder b("finger");
   b.scene.integrator.step = 1e-3;
@@ -43,7 +43,7 @@ TEST(Grips, PressWithTheirEffortAndNoMore) {
       run(grips, simulation, 3);
       EXPECT_NEAR(simulation.effort(0), side * kMaxEffort, 1e-3 * kMaxEffort) << ki;
       EXPECT_NEAR(simulation.position(0), side * kStop, 1e-3);
-      grips.close(0, side * 0.01, kMaxEffort);  // nothing has wound up that would hold it there
+      grips.close(0, side * 0.01, kMaxEffort);  // no wound-up integral holds it there
       run(grips, simulation, 1.5);
       EXPECT_NEAR(simulation.position(0), side * 0.01, 2e-4) << ki;
     }

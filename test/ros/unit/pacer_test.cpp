@@ -1,3 +1,4 @@
+// Tests the pacer, which decides when a step is due relative to the wall clock.
 #include "stepping/pacer.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Tests the schedule of published messages: the rate of messages and their stamps.
 #include "ros/publication_schedule.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ TEST(PublicationSchedule, KeepsTheRateWhereStepsDivideThePeriod) {
   PublicationSchedule schedule(100);
   int sent = 0;
   for (int step = 1; step <= 1000; ++step) sent += schedule.due(ros::Time(step * 0.001));
-  EXPECT_NEAR(sent, 100, 1);  // the first one goes out at once
+  EXPECT_NEAR(sent, 100, 1);  // the first message is sent at once
 }
 
 TEST(PublicationSchedule, KeepsTheMeanRateWhereStepsDoNotDivideThePeriod) {
@@ -19,7 +20,7 @@ TEST(PublicationSchedule, KeepsTheMeanRateWhereStepsDoNotDivideThePeriod) {
   EXPECT_NEAR(sent, 300, 1);
 }
 
-// Stamps are whole nanoseconds, periods too.
+// Stamps and periods are rounded to whole nanoseconds.
 TEST(PublicationSchedule, SendsEveryStepOfItsOwnRate) {
   for (const double rate : {30.0, 700.0, 1000.0, 3000.0}) {
     PublicationSchedule schedule(rate);

@@ -1,3 +1,4 @@
+// Tests the measurement of the real-time factor, which is simulated time per wall time.
 #include "ros/real_time_factor.h"
 
 #include <gtest/gtest.h>
@@ -19,9 +20,9 @@ TEST(RealTimeFactor, IsSimulatedPerWallTimeSinceTheMeasurementBefore) {
 TEST(RealTimeFactor, RepeatsTheLastMeasurementWhereTheNextWouldBeTooShort) {
   RealTimeFactor factor(kStart);
   factor.measure(0.1, kStart + milliseconds(100), false);
-  // A burst of ten steps, then a reset that forces a status: 10 ms simulated in 1 ms.
+  // Ten steps at once, then a reset that forces a status: 10 ms of simulated time in 1 ms.
   EXPECT_NEAR(factor.measure(0.11, kStart + milliseconds(101), false), 1, kRoundOff);
-  // What was not measured then is measured now.
+  // The next measurement contains the time that was not measured then.
   EXPECT_NEAR(factor.measure(0.2, kStart + milliseconds(200), false), 1, kRoundOff);
 }
 

@@ -1,4 +1,5 @@
-// Stamps of steps by the wall clock are when these were due, however late steps and messages are.
+// Tests stamps of steps by the wall clock: they are the times at which steps were due, however late steps and messages
+// are.
 #include <gtest/gtest.h>
 
 #include "ros/stamps.h"
@@ -9,7 +10,7 @@ namespace {
 constexpr double kPeriod = 0.01, kRoundOff = 2e-9;  // [s]
 const ros::Time kBegin(1000.0);
 
-/// The stamp of step `n`, which is due `n` periods after the beginning, and of which one hears so much later [s].
+/// The stamp of step `n`, which is due `n` periods after the beginning, and whose news arrive `late` seconds later.
 ros::Time stamp_of(Stamps& stamps, std::uint64_t n, double late) {
   const ros::Time due = kBegin + ros::Duration(static_cast<double>(n) * kPeriod);
   EXPECT_TRUE(stamps.advance(due + ros::Duration(late), n, late, Stamps::kLargestError));
@@ -42,7 +43,7 @@ TEST(Stamps, AreThePresentWhereNothingKeepsPace) {
   EXPECT_NEAR(seconds(stamps.last()), 0.5, kRoundOff);
   EXPECT_TRUE(stamps.advance(kBegin + ros::Duration(0.5), 2, std::nullopt, Stamps::kLargestError));
   EXPECT_EQ(stamps.last(), kBegin + ros::Duration(0.5) + ros::Duration(0, 1)) << "later than the one before";
-  // Steps that were due before that news follow it closely, and do not stay ahead.
+  // Earlier steps whose news arrive later get stamps just after it, and stamps return to the right time.
   EXPECT_TRUE(stamps.advance(kBegin + ros::Duration(0.5), 3, 0.002, Stamps::kLargestError));
   EXPECT_EQ(stamps.last(), kBegin + ros::Duration(0.5) + ros::Duration(0, 2));
   EXPECT_TRUE(stamps.advance(kBegin + ros::Duration(0.51), 4, 0.002, Stamps::kLargestError));

@@ -1,4 +1,4 @@
-// The thread that steps allocates nothing, whatever was commanded in between.
+// Tests that the thread that steps allocates nothing, with commands and wrenches that begin and end.
 #include <exception>
 #include <utility>
 
@@ -30,7 +30,7 @@ TEST(SteppingThread, AllocatesNothingWhereWrenchesAndCommandsBeginAndEnd) {
   SteppingThread thread(rotor(), {}, [] {});
   ASSERT_TRUE(thread.advance());
   const std::size_t link = 1;
-  for (int i = 0; i < 16; ++i)  // one after the other, all together, and away again
+  for (int i = 0; i < 16; ++i)  // they begin one after the other, act together, and end
     thread.wrenches().add({link, {0.1, 0, 0}, {{0, 0.1, 0}, {0, 0, 0}}, false}, 2 * i * kStep, (100 + 2 * i) * kStep);
   thread.trajectories().follow({{0}, 0, {{0.1, {0.5}, {}, {}}}}, 0, {0.0});
   int steps = 0;
@@ -54,7 +54,7 @@ TEST(SteppingThread, ThrowsWhatKeepsItFromBeginning) {
     const bool came_to_it = test::without_allocation(number, [&] {
       try {
         SteppingThread thread(std::move(simulation), {}, [] {});
-      } catch (const std::exception&) {  // that is, the program goes on
+      } catch (const std::exception&) {  // the exception is caught, so the program continues
         ++thrown;
       }
     });

@@ -1,3 +1,4 @@
+// Tests the thread that makes the steps of the node: pace, commands, halts and failures.
 #include "stepping/stepping_thread.h"
 
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A rotor on a hinge, which fails where it is driven too fast, with a probe at its rim; step [s].
+/// A rotor on a hinge with a probe at its rim, which fails if it is driven too fast. `step` in s.
 Simulation rotor(double step, int max_halvings = 2, const SimulationOptions& options = {}) {
   test::SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
@@ -27,12 +28,12 @@ std::vector<Command> effort(double value, double lifetime = Command::kForEver) {
   return {{Commanded::Effort, 0, value, lifetime}};
 }
 
-/// What one step after the other came to.
+/// The reports of successive steps.
 class Reports {
  public:
   explicit Reports(SteppingThread& thread) : thread_(thread), shown_(thread.simulation().copy()) {}
 
-  /// Takes `count` of them, for which it waits.
+  /// Waits for `count` reports and takes them.
   void take(std::size_t count) {
     for (; count > 0; --count) {
       for (int n = 0; thread_.reports().empty() && n < kPatience; ++n) std::this_thread::sleep_for(milliseconds(1));
@@ -111,7 +112,8 @@ TEST(SteppingThread, TellsWhenEachStepWasDue) {
   thread.run(true);
   reports.take(1);
   const StepReport first = reports.last;
-  // The first one is due a step after the beginning, the others a step after each other, however late they are.
+  // The first step is due one step after the beginning. Each other step is due one step after the one before, however
+  // late they are.
   ASSERT_TRUE(first.due);
   EXPECT_GE(Seconds(*first.due - begin).count(), kStep - 1e-6);
   reports.take(50);
@@ -124,7 +126,7 @@ TEST(SteppingThread, TellsWhenEachStepWasDue) {
 TEST(SteppingThread, WaitsForNobodyWhereTheClockDoesNot) {
   SteppingThread thread(rotor(1e-4), {}, [] {});
   thread.run(true);
-  std::this_thread::sleep_for(milliseconds(300));  // 3000 steps, of which 1024 may wait
+  std::this_thread::sleep_for(milliseconds(300));  // 3000 steps, while the ring has room for 1024
   thread.halt();
   Reports reports(thread);
   reports.take_all();
@@ -175,7 +177,7 @@ TEST(SteppingThread, AFloodWhileItIsHaltedLeavesTheLastCommand) {
   EXPECT_EQ(reports.efforts.back(), 2);
 }
 
-/// Positions after each of the steps that messages command, which come with such pauses between them.
+/// Positions after each of the steps that messages command, with this pause between messages.
 std::vector<double> positions_in_lock_step(milliseconds pause) {
   Pace pace;
   pace.lock_step = true;
@@ -253,7 +255,7 @@ TEST(SteppingThread, HaltsWhereAStepFailsAndGoesOn) {
 
 TEST(SteppingThread, GoesOnWhereAStepIsCutForLackOfTime) {
   SimulationOptions options;
-  options.recovery_wall_time = 1e-9;  // over whenever it is looked at
+  options.recovery_wall_time = 1e-9;  // has always passed when it is checked
   Pace pace;
   pace.real_time_factor = 0;
   pace.cuts_late_steps = true;

@@ -1,4 +1,4 @@
-// Ways of joints through points: what passes the points, how one replaces another, how they stop.
+// Tests paths of joints through points: interpolation, replacement by another path, stops.
 #include <cmath>
 #include <limits>
 
@@ -9,11 +9,11 @@
 namespace flexarm::node {
 namespace {
 
-constexpr double kRoundOff = 1e-12;  ///< of polynomials of some seconds with coefficients of about 1
+constexpr double kRoundOff = 1e-12;  ///< of polynomials over some seconds with coefficients of about 1
 constexpr double kStart = 10;        ///< [s]
 const std::vector<double> kTimes = {0.5, 1.25, 2, 3.5};
 
-/// A polynomial of the time since kStart.
+/// A polynomial in the time since kStart.
 JointPoint polynomial(int degree, double time) {
   const double c[] = {0.3, -0.4, 0.7, 0.2, -0.15, 0.03};
   const double t = time - kStart;
@@ -26,7 +26,7 @@ JointPoint polynomial(int degree, double time) {
   return out;
 }
 
-/// Of one joint, through the points of that polynomial, with the rates that tell it.
+/// A trajectory of one joint through points of this polynomial, with the rates that its degree needs.
 JointTrajectory trajectory_of(int degree, std::size_t joint = 0) {
   JointTrajectory out;
   out.joints = {joint};
@@ -46,7 +46,7 @@ void expect_near(const JointPoint& got, const JointPoint& expected, double time)
   EXPECT_NEAR(got.acceleration, expected.acceleration, 100 * kRoundOff) << time;
 }
 
-// Points of a polynomial that their splines can be give it back.
+// Splines through points of a polynomial of their degree reproduce the polynomial.
 TEST(TrajectoryFollower, SplinesAreOfDegreeOneThreeAndFive) {
   for (const int degree : {1, 3, 5}) {
     TrajectoryFollower follower(1);
@@ -85,7 +85,7 @@ TEST(TrajectoryFollower, AnotherOneReplacesItWhereItBeginsWithoutAJump) {
     TrajectoryFollower follower(1);
     follower.follow(trajectory_of(degree), kStart, {0.3});
     JointTrajectory next = trajectory_of(degree);
-    next.start = kStart + 1.7;  // in what is the future at 1.0
+    next.start = kStart + 1.7;  // in the future at the time 1.0
     for (JointTrajectory::Point& point : next.points) point.positions[0] += 1;
     follower.follow(next, kStart + 1.0, {0.0});
     for (const double time : {1.1, 1.5, 1.6999})
@@ -149,7 +149,7 @@ TEST(TrajectoryFollower, SaysWhatIsWrongWithATrajectory) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(fault([](JointTrajectory&) {}), "");
-  EXPECT_EQ(fault([](JointTrajectory& t) { t.points.clear(); }), "");  // which stops the joints
+  EXPECT_EQ(fault([](JointTrajectory& t) { t.points.clear(); }), "");  // it stops the joints
   EXPECT_EQ(fault([](JointTrajectory& t) { t.joints.clear(); }), "it names no joint");
   EXPECT_EQ(fault([](JointTrajectory& t) { t.joints = {1, 1}; }), "it names a joint twice");
   EXPECT_EQ(fault([](JointTrajectory& t) { t.points[1].positions.clear(); }), "point 2 has 0 positions for 1 joints");
@@ -166,7 +166,7 @@ TEST(TrajectoryFollower, SaysWhatIsWrongWithATrajectory) {
   EXPECT_EQ(fault([=](JointTrajectory& t) { t.points[2].accelerations = {nan}; }),
             "point 3 has a number that is not finite");
   EXPECT_EQ(fault([](JointTrajectory& t) { t.points[1].time = 0.5; }), "point 2 is not later than the one before");
-  EXPECT_EQ(fault([=](JointTrajectory& t) { t.points[1].time = nan; }), "the time of point 2 is no number from 0 on");
+  EXPECT_EQ(fault([=](JointTrajectory& t) { t.points[1].time = nan; }), "the time of point 2 is not a number >= 0");
 }
 
 }  // namespace

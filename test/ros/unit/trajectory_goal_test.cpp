@@ -1,4 +1,4 @@
-// What becomes of a goal: tolerances on the way, at its end, and for some time after that.
+// Tests the outcome of a goal: tolerances on the path, at its end, and for some time after it.
 #include <cmath>
 #include <stdexcept>
 
@@ -13,7 +13,7 @@ using Verdict = TrajectoryGoal::Verdict;
 
 constexpr double kEnd = 5, kPatience = 0.5;  // [s]
 
-/// Of two joints, the second of which may do what it likes.
+/// A goal of two joints, the second of which has no tolerance.
 TrajectoryGoal goal() {
   return {{3, 7}, {{0.1, 0.5}, {}}, {{0.01, 0.05}, {-1, -1}}, kEnd, kPatience};
 }
@@ -57,7 +57,7 @@ control::JointTolerance tolerance(const std::string& joint, double position, dou
 TEST(TrajectoryGoal, ToleranceIsOfTheJointThatItNames) {
   const std::vector<control::JointTolerance> given = {tolerance("elbow", 0.1, 0.2), tolerance("wrist", 0.3, 0.4)};
   EXPECT_EQ(fault_of_tolerances(given, {"shoulder", "wrist", "elbow"}), "");
-  // Without points all joints stop that move, whatever joints are named.
+  // A goal without points stops all moving joints, whichever joints it names.
   const std::vector<JointTolerance> of_moving = tolerances_of(given, {"wrist", "shoulder"});
   ASSERT_EQ(of_moving.size(), 2u);
   EXPECT_EQ(of_moving[0].position, 0.3);

@@ -1,6 +1,6 @@
-"""Values of a scene's parameters with which it moves as was measured: what `flexarm identify` does. docs/identify.md
+"""Finds values of a scene's parameters with which it moves as was measured, for `flexarm identify`. docs/identify.md
 
-    plan = read_plan("plan.yaml", scene.parameters)          what is to be found
+    plan = read_plan("plan.yaml", scene.parameters)          the unknowns and the measured columns
     measurements, begin = read_measurements("data.csv", plan)
     experiment = Experiment(...)                             simulates what would have been measured
     result = fit(experiment)                                 bounded nonlinear least squares

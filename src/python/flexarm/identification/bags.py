@@ -1,6 +1,10 @@
-"""Measurements and commands in ROS bags."""
+"""Reads measurements and commands from ROS bags."""
 
+import contextlib
 import os
+import shutil
+import struct
+import tempfile
 
 import numpy
 
@@ -14,21 +18,27 @@ def is_bag(path):
     return os.path.splitext(path)[1] == ".bag"
 
 
-def _messages(path, topic):
-    """Pairs (time [s], message) of a topic, by their own stamps where they have some.
-
-    Raises InputError if there are none.
-    """
+def _rosbag(path):
     try:
         import rosbag
     except ImportError:
         raise InputError("%s: bags are read by Debian's package python3-rosbag, which is missing" % path) from None
+    return rosbag
+
+
+def messages(path, topic):
+    """Pairs (time [s], message) of a topic. The time is the message's stamp or, if it has none, the time of recording.
+
+    Raises InputError if the bag has no messages on the topic.
+    """
+    rosbag = _rosbag(path)
     wanted = "/" + topic.lstrip("/")
     try:
         with rosbag.Bag(path) as bag:
             topics = sorted(bag.get_type_and_topic_info().topics)
             if wanted not in topics:
-                raise InputError("%s: expected messages on '%s', got the topics %s" % (path, wanted, ", ".join(topics)))
+                raise InputError("%s: expected messages on '%s', got %s" % (
+                    path, wanted, "the topics " + ", ".join(topics) if topics else "none"))
             for _, message, received in bag.read_messages(wanted):
                 stamp = message.header.stamp if hasattr(message, "header") else received
                 yield (stamp if stamp.to_nsec() else received).to_sec(), message
@@ -36,11 +46,60 @@ def _messages(path, topic):
         raise InputError("%s: cannot be read as a bag: %s" % (path, error)) from None
 
 
-def read_columns(path, columns, topic):
-    """Columns of a plan: joint/NAME/position, velocity or effort of the topic of joint states, sensor/NAME/strain and
-    sensor/NAME/fx to mz of the topics /sensors/NAME.
+def _has_lost_its_end(path):
+    rosbag = _rosbag(path)
+    try:
+        with rosbag.Bag(path):
+            return False
+    except rosbag.ROSBagUnindexedException:
+        return True
+    except (OSError, rosbag.ROSBagException):  # told when it is read
+        return False
 
-    Returns pairs (times, values) by names of columns.
+
+@contextlib.contextmanager
+def whole(path, losses):
+    """A path at which the bag can be read: its own, or that of a copy with a new index if it has lost its end.
+
+    losses: a sentence about that is appended; None: the bag's own path in any case.
+    """
+    if losses is None or not _has_lost_its_end(path):
+        yield path
+        return
+    rosbag = _rosbag(path)
+    with tempfile.TemporaryDirectory(prefix="flexarm_") as folder:
+        copy = os.path.join(folder, os.path.basename(path))
+        shutil.copyfile(path, copy)
+        try:
+            with rosbag.Bag(copy, "a", allow_unindexed=True) as bag:
+                for _ in bag.reindex():
+                    pass
+        except (OSError, ValueError, struct.error, rosbag.ROSBagException) as error:
+            raise InputError("%s: has lost its end, and nothing can be read: %s" % (path, error)) from None
+        losses.append("%s has lost its end: messages are missing" % path)
+        yield copy
+
+
+def origin(path):
+    """The fields `scene` and `scene_options` that `flexarm simulate` writes; None where they are missing."""
+    found = {}
+
+    def take(topic, datatype, md5sum, definition, header):
+        found.update(header)
+        return False
+
+    with _rosbag(path).Bag(path) as bag:
+        for _ in bag.read_messages("/tf_static", connection_filter=take):
+            pass
+    return [value.decode() if isinstance(value, bytes) else value
+            for value in map(found.get, ("scene", "scene_options"))]
+
+
+def read_columns(path, columns, topic):
+    """Reads columns of a plan: joint/NAME/position, velocity or effort from the topic of joint states;
+    sensor/NAME/strain and sensor/NAME/fx to mz from the topics /sensors/NAME.
+
+    Returns a dictionary of pairs (times, values) by names of columns.
     """
     series = {}
     joints = {}
@@ -61,7 +120,7 @@ def read_columns(path, columns, topic):
 
 def _joints(path, topic, wanted):
     series = {column: ([], []) for column in wanted}
-    for time, message in _messages(path, topic):
+    for time, message in messages(path, topic):
         for column, (_, joint, quantity) in wanted.items():
             values = getattr(message, JOINT_FIELDS[quantity])
             if joint in message.name and len(values) == len(message.name):
@@ -76,7 +135,7 @@ def _joints(path, topic, wanted):
 
 def _sensor(path, name, quantity):
     rows = []
-    for time, message in _messages(path, "/sensors/" + name):
+    for time, message in messages(path, "/sensors/" + name):
         try:
             value = message.strain if quantity == "strain" else getattr(getattr(message.wrench, WRENCH[quantity][0]),
                                                                         WRENCH[quantity][1])
@@ -89,12 +148,12 @@ def _sensor(path, name, quantity):
 
 
 def read_efforts(path, topic, entry):
-    """Efforts of a topic of joint states or of joint force commands.
+    """Reads efforts from a topic of joint states or of joint force commands.
 
-    Returns (times, efforts, lifetimes) by names of joints; the lifetimes are None for joint states, which have none.
+    Returns a dictionary of (times, efforts, lifetimes) by names of joints. For joint states, the lifetimes are None.
     """
     found = {}
-    for time, message in _messages(path, topic):
+    for time, message in messages(path, topic):
         is_command = message._type == "flexarm/JointForceCommand"
         if not is_command and message._type != "sensor_msgs/JointState":
             raise entry.error("expected messages of flexarm/JointForceCommand or sensor_msgs/JointState on '%s', got %s"

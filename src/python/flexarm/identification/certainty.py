@@ -1,4 +1,4 @@
-"""How well are unknowns determined by measurements? Linear statistics about the best fit."""
+"""How well the measurements determine the unknowns: linear statistics at the best fit."""
 
 import typing
 
@@ -6,9 +6,9 @@ import numpy
 
 
 class Certainty(typing.NamedTuple):
-    """standard_errors: shape (unknowns,), infinite where the measurements do not tell.
-    correlations: of the estimates, shape (unknowns, unknowns), NaN for those.
-    undetermined: lists of indices of unknowns that can be changed together so that nothing is seen of it.
+    """standard_errors: shape (unknowns,), infinite for unknowns that the measurements do not determine.
+    correlations: of the estimates, shape (unknowns, unknowns), NaN for undetermined unknowns.
+    undetermined: lists of indices of unknowns that can be changed together without an effect on the measured values.
     """
 
     standard_errors: numpy.ndarray
@@ -17,14 +17,14 @@ class Certainty(typing.NamedTuple):
 
 
 def certainty(jacobian, variance, smallest, resolution):
-    """From the derivatives of residuals that all have the same variance.
+    """Computes the certainty from the derivatives of residuals that all have the same variance.
 
-    jacobian: shape (values, unknowns). smallest: length of a column of it that cannot be told from zero.
-    resolution: relative error of columns: a combination of columns of length one that is shorter cannot be told from
-      zero.
+    jacobian: shape (values, unknowns). smallest: a column of smaller norm counts as zero.
+    resolution: relative error of columns. A normalised combination of columns with norm 1 counts as zero if its norm
+      is smaller.
 
-    The covariance is variance (J^T J)^-1 (Seber and Wild, Nonlinear Regression, 2.1), by the singular values of J with
-    columns of length one; combinations that cannot be told from zero are left out.
+    The covariance is variance (J^T J)^-1 (Seber and Wild, Nonlinear Regression, 2.1). It is computed from the singular
+    values of J, with columns scaled to norm 1. Combinations that count as zero are left out.
     """
     lengths = numpy.linalg.norm(jacobian, axis=0)
     seen = lengths > smallest
@@ -49,6 +49,6 @@ def certainty(jacobian, variance, smallest, resolution):
 
 
 def succession(residuals):
-    """Correlation of residuals with those that follow them: of independent ones 0, give or take 1/sqrt(values)."""
+    """The autocorrelation of residuals at lag one. For independent residuals it is 0, give or take 1/sqrt(values)."""
     square = float(residuals @ residuals)
     return float(residuals[1:] @ residuals[:-1]) / square if square > 0 else 0.0

@@ -7,12 +7,12 @@ from .inputs import InputError, read_table, read_yaml
 
 
 class EffortHistory:
-    """An effort over time [N m or N]: linear between knots, at which it may jump, constant after the last one.
+    """An effort over time [N m or N]: linear between knots, constant after the last one; it may jump at knots.
 
     times: of the knots, shape (knots,), not decreasing [s].
-    after: efforts after the knots, shape (knots,).
-    until: efforts just before the next ones, shape (knots - 1,); None: as after the knots.
-    before: all of them.
+    after: effort just after each knot, shape (knots,).
+    until: effort just before the next knot, shape (knots - 1,); None: the same as just after the knot.
+    before: effort before the first knot.
     """
 
     def __init__(self, times, after, until=None, before=0.0):
@@ -24,7 +24,7 @@ class EffortHistory:
         self._impulses = numpy.append(0.0, numpy.cumsum(lengths * (self._after[:-1] + until) / 2))
 
     def _impulse(self, times):
-        """Integrals from the first knot on."""
+        """Integrals of the effort from the first knot to the times."""
         knots = numpy.searchsorted(self._times, times, side="right") - 1
         past = times - self._times[numpy.maximum(knots, 0)]
         inside = numpy.maximum(knots, 0)
@@ -32,12 +32,12 @@ class EffortHistory:
         return numpy.where(knots < 0, self._before * past, after)
 
     def means(self, edges):
-        """Mean efforts between edges of time, shape (edges - 1,): a step that has them has the history's impulse."""
+        """Mean efforts between edges of time, shape (edges - 1,). They give steps the impulses of the history."""
         return numpy.diff(self._impulse(edges)) / numpy.diff(edges)
 
 
 def pulses(entries):
-    """The sum of pulses (begin [s], end [s], effort) as a history."""
+    """A history that is the sum of pulses (begin [s], end [s], effort)."""
     times = numpy.array([[begin, end] for begin, end, _ in entries]).ravel()
     jumps = numpy.array([[effort, -effort] for _, _, effort in entries]).ravel()
     order = numpy.argsort(times, kind="stable")
@@ -45,14 +45,14 @@ def pulses(entries):
 
 
 def rows(times, efforts, hold):
-    """Of rows of a table, the first of which also holds before it; `hold`: each holds until the next one."""
+    """A history from rows of a table. The first effort also holds before. `hold`: each holds until the next row."""
     return EffortHistory(times, efforts, None if hold else efforts[1:], efforts[0])
 
 
 def read_efforts(commands, data, begin):
-    """Histories by names of joints.
+    """Reads a dictionary of histories by names of joints.
 
-    commands: those of a plan. data: path of the measurements. begin: time in them at which the scene starts [s].
+    commands: those of a plan. data: path of the measurements. begin: time of the data at which the scene starts [s].
     Raises InputError.
     """
     path = commands.file or data
@@ -75,7 +75,7 @@ def _of_table(path, commands, begin):
 
 
 def _of_schedule(path):
-    """A file like config/demo_commands.yaml, in simulated time."""
+    """Reads a file like config/demo_commands.yaml, in simulated time."""
     found = {}
     commands = read_yaml(path).mapping("period", "commands").get("commands")
     for entry in commands.items() if commands else []:

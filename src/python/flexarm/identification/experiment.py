@@ -1,4 +1,4 @@
-"""An experiment that is simulated again: what would have been measured, were the unknowns these?"""
+"""Simulates an experiment: computes what would have been measured for given values of the unknowns."""
 
 import math
 import typing
@@ -10,20 +10,20 @@ from .. import Simulation, read_scene
 from ..errors import SceneError
 from .inputs import InputError
 
-# Times that are so near to the end of a step, in steps, are there: stamps are rounded.
+# Times this near to the end of a step (in steps) count as its end, since stamps are rounded.
 ROUNDED = 1e-5
 MOST_STEPS = 10**7
-# Of the longest step: shorter ones, which would end at the measurements, cost more than a spline between longer ones.
+# Least step per longest step. To end steps at the measurements with smaller ones costs more than a spline between rows.
 SHORTEST = 0.25
 
 
 def choose_step(times, longest):
-    """The longest step, at most `longest` [s], of which all `times` are multiples; None: none is worth it."""
+    """The largest step, at most `longest` [s], of which all `times` are multiples; None: there is none large enough."""
     spacings = numpy.diff(numpy.unique(numpy.append(0.0, times)))
     if not len(spacings):
         return None
     spacing = spacings.min()
-    # Of a grid the last time says best how wide it is.
+    # If the times are a grid, the last time gives its spacing most accurately.
     spacing = times.max() / max(round(times.max() / spacing), 1)
     if spacing < SHORTEST * longest or abs(times / spacing - numpy.round(times / spacing)).max() > ROUNDED:
         return None
@@ -32,10 +32,10 @@ def choose_step(times, longest):
 
 
 class Sampling:
-    """Rows of a simulation, one at the start and one after each step, looked at at any time.
+    """Evaluates columns at any times, from rows of a simulation (one at the start and one after each step).
 
-    Where all times are ends of steps, these rows are taken; else a cubic spline goes through the rows, which is off by
-    the fourth power of the step.
+    If all times are ends of steps, values are taken from these rows. Else they are taken from a cubic spline through
+    the rows, with an error of the fourth order in the step.
     """
 
     def __init__(self, times, step):
@@ -47,10 +47,10 @@ class Sampling:
         self.every = int(numpy.gcd.reduce(numpy.concatenate([*at, [self.steps]]))) if self.is_exact else 1
         self._rows = [rows // self.every for rows in at]
         if not self.is_exact:
-            self.steps = max(self.steps, 3)  # which a spline asks for
+            self.steps = max(self.steps, 3)  # required by the spline
 
     def look(self, rows):
-        """Values of the columns of `rows` at their times, one after the other, shape (values,)."""
+        """Values of the columns of `rows` at their times, column after column, shape (values,)."""
         if self.is_exact:
             return numpy.concatenate([rows[at, i] for i, at in enumerate(self._rows)])
         grid = self._step * numpy.arange(self.steps + 1)
@@ -59,21 +59,21 @@ class Sampling:
 
 
 class Setting(typing.NamedTuple):
-    """How a scene is simulated whatever the unknowns: by fixed steps and one tolerance results are smooth in them."""
+    """How the scene is simulated. With fixed steps and tolerance, results are smooth functions of the unknowns."""
 
     scene: str  # path
-    values: typing.Dict[str, float]  # of parameters that are known, in the place of the file's
+    values: typing.Dict[str, float]  # of known parameters, which replace the file's
     step: float  # [s]
     tolerance: float
 
 
 class Experiment:
-    """unknowns: of a plan. initial: coordinates at the start that are known, by JOINT/position and JOINT/velocity.
+    """unknowns: of a plan. initial: known coordinates at the start, by JOINT/position and JOINT/velocity.
     measurements: a list of Measurement. efforts: histories by names of joints. setting: a Setting.
 
     steps, step: of each simulation. is_exact: values are taken at ends of steps. units: of the columns.
-    measured, shape (values,): all columns, one after the other, as simulate() returns them.
-    parts: slices of it, one for each column.
+    measured: shape (values,): all columns, one after the other, in the order of simulate().
+    parts: slices of `measured`, one for each column.
     """
 
     def __init__(self, unknowns, initial, measurements, efforts, setting):
@@ -87,7 +87,7 @@ class Experiment:
         longest = max(column.max() for column in times)
         if longest / setting.step > MOST_STEPS:
             raise InputError("the measurements last until %g s of simulated time, more than %d steps of %g s: 'begin' "
-                             "of the plan is the time in them at which the scene starts"
+                             "of the plan must be the measured time at which the scene starts"
                              % (longest, MOST_STEPS, setting.step))
         self._sampling = Sampling(times, setting.step)
         self.steps, self.is_exact = self._sampling.steps, self._sampling.is_exact
@@ -97,7 +97,7 @@ class Experiment:
         self._joints, self._efforts = self._commands(simulation, efforts)
 
     def _columns(self, simulation):
-        """Where the columns are in a row of results, and their units."""
+        """The indices of the columns in a row of results, and their units."""
         for measurement in self.measurements:
             column = measurement.column
             try:
@@ -112,12 +112,12 @@ class Experiment:
         return order, [columns[i][1] for i in order]
 
     def _commands(self, simulation, efforts):
-        """Joints, and their efforts in each step, shape (steps, joints); None: the scene's."""
+        """Joints, and their efforts in each step, shape (steps, joints); None: efforts are those of the scene."""
         if not efforts:
             return None, None
         for joint in efforts:
             if joint not in simulation.effort_joints:
-                raise InputError("efforts are given for '%s': expected joints that take some, of %s"
+                raise InputError("efforts are given for '%s': expected joints that take efforts, of %s"
                                  % (joint, ", ".join(simulation.effort_joints)))
         edges = self.step * numpy.arange(self.steps + 1)
         return list(efforts), numpy.column_stack([history.means(edges) for history in efforts.values()])
@@ -141,10 +141,10 @@ class Experiment:
         return simulation
 
     def simulate(self, values):
-        """What would be measured, shape (values,).
+        """What would be measured with these values of the unknowns, shape (values,).
 
-        values: of the unknowns. Several threads may call it.
-        Raises flexarm.SceneError, flexarm.StepError, InputError if there is no scene, motion or start with these.
+        values: shape (unknowns,). May be called by several threads at once.
+        Raises flexarm.SceneError, flexarm.StepError or InputError if scene, motion or start are impossible with these.
         """
         simulation = self._simulation(values)
         first = simulation.row(self._record)
@@ -152,9 +152,9 @@ class Experiment:
         return self._sampling.look(numpy.vstack([first, rows])[:, self._order])
 
     def derivatives(self, values):
-        """Of simulate() by the unknowns, shape (values, unknowns), as sensitivities of one run.
+        """Derivatives of simulate() with respect to the unknowns, shape (values, unknowns), from one run.
 
-        None where there are none: with unknowns or known coordinates of the start, at events, for some schemes
+        None if a run has no such derivatives: if coordinates of the start are given, at events, or with some schemes
         (docs/notes/sensitivities.md). Raises as simulate() does.
         """
         if self._initial or any(unknown.of_start for unknown in self.unknowns):

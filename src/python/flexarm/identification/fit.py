@@ -1,4 +1,4 @@
-"""Bounded nonlinear least squares: which unknowns bring a simulation nearest to what was measured?"""
+"""Finds the unknowns with which a simulation comes nearest to the measurements: bounded nonlinear least squares."""
 
 import typing
 from concurrent.futures import ThreadPoolExecutor
@@ -10,13 +10,13 @@ from ..errors import SceneError, StepError
 from .certainty import Certainty, certainty
 from .inputs import InputError
 
-# A step of the search that is expected to be shorter than this part of the standard errors is the last one.
+# The search ends when the next step is expected to be shorter than this fraction of the standard errors.
 NEGLIGIBLE = 0.01
 MOST_ITERATIONS = 50
 
 
 class Interruption(BaseException):
-    """The search is to end now; its best so far is kept. number: of the signal."""
+    """Ends the search, which keeps its best result so far. number: of the signal."""
 
     def __init__(self, number):
         super().__init__(number)
@@ -24,44 +24,45 @@ class Interruption(BaseException):
 
 
 class FitError(RuntimeError):
-    """Nothing can be simulated with some values, and so there is no result, or no better one."""
+    """The simulation failed with the search's first values, or around its best ones."""
 
 
 class Iteration(typing.NamedTuple):
-    """How far a search is."""
+    """The progress of a search."""
 
     number: int
-    simulations: int  # since its beginning
-    factor: float  # root mean square of the residuals, of the noise
+    simulations: int  # since the search began
+    factor: float  # root mean square of the residuals, relative to the noise
     values: numpy.ndarray  # of the unknowns
 
 
 class Fit(typing.NamedTuple):
     values: numpy.ndarray  # of the unknowns, shape (unknowns,)
     certainty: Certainty
-    factor: float  # estimated standard deviation of errors of measurement, of `noise`
+    factor: float  # estimated standard deviation of the measurement errors, relative to `noise`
     noise: numpy.ndarray  # of the columns, shape (columns,)
-    predicted: numpy.ndarray  # with `values`, as Experiment.measured, shape (values,)
+    predicted: numpy.ndarray  # simulated with `values`, ordered as Experiment.measured, shape (values,)
     at_limit: numpy.ndarray  # bool, shape (unknowns,)
     is_converged: bool
-    ending: str  # why it ended
+    ending: str  # why the search ended
     iterations: int
     simulations: int
-    signal: typing.Optional[int]  # that has interrupted it
+    signal: typing.Optional[int]  # that has interrupted the search
 
 
 class _Failed(typing.NamedTuple):
-    """A simulation with unknowns for which there is none."""
+    """The outcome of a simulation that failed."""
 
     reason: str
 
 
 class _Search:
-    """Simulations of a search, counted, the best one kept. Unknowns are in units of their scales."""
+    """Makes and counts the simulations of a search, and keeps the best one. Unknowns are divided by their scales."""
 
     def __init__(self, experiment, difference, forward, workers, show):
         self._experiment, self._difference, self._forward, self._show = experiment, difference, forward, show
         self._pool = ThreadPoolExecutor(workers)
+        self._futures = []
         unknowns = experiment.unknowns
         self.scales = numpy.array([unknown.scale for unknown in unknowns])
         self.lower = numpy.array([unknown.min for unknown in unknowns]) / self.scales
@@ -72,7 +73,7 @@ class _Search:
         self.forget()
 
     def forget(self):
-        """Residuals are measured otherwise from now on."""
+        """Drops the best simulation, since residuals get other weights."""
         self.best, self.cost, self.predicted, self.jacobian_at_best = None, numpy.inf, None, None
 
     def weigh(self, noise):
@@ -82,7 +83,9 @@ class _Search:
         self.forget()
 
     def close(self):
-        self._pool.shutdown(wait=True, cancel_futures=True)
+        for future in self._futures:
+            future.cancel()
+        self._pool.shutdown(wait=True)
 
     def _simulate(self, x):
         try:
@@ -91,16 +94,17 @@ class _Search:
             return _Failed(str(error))
 
     def simulate(self, points):
-        """Of several points at once."""
+        """Simulates with several points at once."""
         self.simulations += len(points)
-        return list(self._pool.map(self._simulate, points))
+        self._futures = [self._pool.submit(self._simulate, point) for point in points]
+        return [future.result() for future in self._futures]
 
     def residuals(self, x):
-        """(simulated - measured) / noise, shape (values,); NaN where it fails: the search stays nearer."""
+        """(simulated - measured) / noise, shape (values,); NaN if the simulation fails: then the search steps back."""
         (predicted,) = self.simulate([x])
         if isinstance(predicted, _Failed):
             if self.best is None:
-                raise FitError("with the values that the search begins with nothing can be simulated: "
+                raise FitError("the scene cannot be simulated with the start values of the search: "
                                + predicted.reason)
             return numpy.full(len(self.weights), numpy.nan)
         residuals = (predicted - self._experiment.measured) * self.weights
@@ -110,7 +114,7 @@ class _Search:
         return residuals
 
     def jacobian(self, x):
-        """Derivatives of residuals() at the best point."""
+        """Derivatives of residuals() at `x`, which must be the best point."""
         assert numpy.array_equal(x, self.best)
         derivatives = self._derivatives(x) if self._forward else None
         if derivatives is None:
@@ -123,39 +127,39 @@ class _Search:
         return jacobian
 
     def _derivatives(self, x):
-        """By sensitivities of one run, shape (values, unknowns); None where it has none."""
+        """Derivatives from sensitivities of one run, shape (values, unknowns); None if the run has none."""
         self.simulations += 1
         try:
             derivatives = self._experiment.derivatives(x * self.scales)
-        except (StepError, SceneError, InputError):  # of a neighbour
+        except (StepError, SceneError, InputError):  # with a varied value
             return None
         return None if derivatives is None else derivatives * self.scales
 
     def lengths(self, x):
-        """By which unknowns are varied: fixed parts of their sizes, to the side where there is more room."""
+        """Differences by which unknowns are varied: fractions of their sizes, negative near the upper limit."""
         sizes = self._difference * numpy.maximum(abs(x), 0.1)
         return numpy.where(x + sizes <= self.upper, sizes, -sizes)
 
 
 def differences(search, x, predicted):
-    """Derivatives of what is simulated by the unknowns, shape (values, unknowns), by one-sided differences.
+    """Derivatives of simulated values with respect to the unknowns, shape (values, unknowns), by one-sided differences.
 
-    predicted: what is simulated with `x`.
+    predicted: simulated values at `x`.
     """
     steps = search.lengths(x)
     varied = search.simulate([x + step * row for step, row in zip(steps, numpy.eye(len(x)))])
     for i, result in enumerate(varied):
-        if isinstance(result, _Failed):  # the other side may do
+        if isinstance(result, _Failed):  # tries the other side
             (varied[i],) = search.simulate([x - steps[i] * numpy.eye(len(x))[i]])
             steps[i] = -steps[i]
             if isinstance(varied[i], _Failed):
-                raise FitError("not converged: on neither side of the best values can anything be simulated: "
+                raise FitError("not converged: simulations fail on both sides of the best values: "
                                + result.reason)
     return numpy.column_stack([(result - predicted) / step for result, step in zip(varied, steps)])
 
 
 def _first_noise(experiment):
-    """The plan's; where there is none, how far the column's values are spread."""
+    """The noise of each column: the plan's or, if the plan gives none, the spread of the column's values."""
     noise = []
     for measurement in experiment.measurements:
         spread = float(measurement.values.std()) or abs(float(measurement.values[0])) or 1.0
@@ -164,23 +168,23 @@ def _first_noise(experiment):
 
 
 def _noise_of_residuals(experiment, search):
-    """The plan's; where there is none, that of the residuals."""
+    """The noise of each column: the plan's or, if the plan gives none, that of the residuals."""
     residuals = search.predicted - experiment.measured
     share = 1 - len(experiment.unknowns) / len(residuals)
     noise = search.noise.copy()
     for i, (part, measurement) in enumerate(zip(experiment.parts, experiment.measurements)):
         if measurement.column.noise is None:
-            # Residuals of nothing but round-off are no noise.
+            # Residuals that are only round-off are not noise.
             smallest = 1e-9 * search.noise[i]
             noise[i] = max(float(numpy.sqrt((residuals[part] ** 2).mean() / share)), smallest)
     return noise
 
 
 def _descend(search, start):
-    """One least squares problem; whether it converged, and why it ended."""
+    """Solves one least squares problem. Returns whether it converged, and why it ended."""
     count = len(search.weights)
-    # At the minimum the cost is half the number of values, in units of the variance; a step of a part of the standard
-    # errors lowers it by half of the square of that part.
+    # At the minimum, the cost is half the number of values, if the variance is 1. A step by a fraction f of the
+    # standard errors lowers the cost by f^2 / 2.
     result = least_squares(search.residuals, start, search.jacobian, bounds=(search.lower, search.upper), method="trf",
                            x_scale="jac", ftol=max(NEGLIGIBLE**2 / count, 1e-14), xtol=1e-9, gtol=1e-12,
                            max_nfev=MOST_ITERATIONS)
@@ -193,13 +197,13 @@ def fit(experiment, difference=1e-4, workers=None, show=lambda iteration: None, 
     """Finds the unknowns of an experiment.
 
     difference: by which unknowns are varied, relative to their size.
-    forward: derivatives are sensitivities of one run, where it has them, in the place of differences of several.
-    workers: threads for simulations; None: one for each processor. The result does not depend on it.
-    show: called with an Iteration after each.
+    forward: derivatives are sensitivities of one run, if it has them, rather than differences between runs.
+    workers: number of threads that simulate; None: one per processor. The result does not depend on it.
+    show: called with an Iteration after each iteration.
 
-    Columns whose noise is not known count by how far their values are spread at first, then the search goes on with
-    that of the residuals. Interruption ends the search with the best so far. Raises FitError where nothing can be
-    simulated at its start.
+    The weight of a column whose noise is unknown first follows from the spread of its values. After convergence the
+    search goes on with the noise of the residuals. Interruption ends the search, which returns the best values so far.
+    Raises FitError if the simulation fails at the start of the search.
     """
     search = _Search(experiment, difference, forward, workers, show)
     is_converged, ending, signal = False, "", None
@@ -230,7 +234,7 @@ def _result(experiment, search, difference, is_converged, ending, signal):
     if search.jacobian_at_best is None:  # interrupted
         sure = Certainty(numpy.full(unknowns, numpy.inf), numpy.full((unknowns, unknowns), numpy.nan), [])
     else:
-        # Differences blow up what Newton's tolerance leaves of a simulation; beside that, they are of first order.
+        # Differences magnify the error of Newton's method in a simulation. Besides, they have an error of first order.
         signal_size = numpy.linalg.norm(search.predicted * search.weights)
         sure = certainty(search.jacobian_at_best, variance, 1e-10 / difference * signal_size, 10 * difference)
     errors = numpy.where(numpy.isfinite(sure.standard_errors), sure.standard_errors, 0.0)

@@ -1,20 +1,22 @@
-"""Files that people write: what is wrong with them is said by file, line and key."""
+"""Reads YAML and CSV files. Error messages name file, line and key."""
 
-import csv
 import math
 
 import numpy
 import yaml
 
+from ..errors import ResultsError
+from ..result_files import read_csv
+
 
 class InputError(ValueError):
-    """What was given cannot be used; the text names file, line or key, what was read and what was expected."""
+    """The input cannot be used. The text names file, line or key, what was read and what was expected."""
 
 
 class Entry:
-    """A value in a YAML file, with the place where it stands.
+    """A value in a YAML file, with its place in the file.
 
-    name: keys that lead to it, "parameters: young: min"; empty: the whole file.
+    name: the keys that lead to the value, such as "parameters: young: min"; empty: the whole file.
     """
 
     def __init__(self, file, node, name=""):
@@ -26,7 +28,7 @@ class Entry:
 
     @property
     def text(self):
-        """As it stands in the file, where it is a scalar."""
+        """A scalar as written in the file; for other nodes, their kind."""
         return self._node.value if isinstance(self._node, yaml.ScalarNode) else "a %s" % self._node.id
 
     @property
@@ -38,18 +40,18 @@ class Entry:
         return isinstance(self._node, yaml.MappingNode)
 
     def error(self, what):
-        """An InputError about it: `what` is wrong."""
+        """An InputError about this value; `what` says what is wrong."""
         return InputError("%s:%d: %s%s" % (self.file, self.line, self.name and self.name + ": ", what))
 
     def expected(self, what):
-        """An InputError: `what` was expected."""
+        """An InputError that says that `what` was expected."""
         return self.error("expected %s, got '%s'" % (what, self.text))
 
     def _below(self, node, key):
         return Entry(self.file, node, "%s: %s" % (self.name, key) if self.name else str(key))
 
     def mapping(self, *known):
-        """Entries by their keys, none of which may come twice; `known`: no others may come."""
+        """A dictionary of entries by key. Repeated keys are errors. If `known` is given, other keys are errors, too."""
         if self.is_empty:
             return {}
         if not self.is_mapping:
@@ -65,13 +67,13 @@ class Entry:
         return entries
 
     def items(self):
-        """Entries of a list."""
+        """The entries of a list."""
         if not isinstance(self._node, yaml.SequenceNode):
             raise self.expected("a list")
         return [self._below(node, i + 1) for i, node in enumerate(self._node.value)]
 
     def number(self, expected="a finite number", holds=lambda value: True):
-        # YAML takes 70e9 for text.
+        # YAML reads numbers such as 70e9 as text.
         try:
             value = float(self.text)
         except ValueError:
@@ -95,7 +97,7 @@ class Entry:
 
 
 def read_yaml(path):
-    """The whole file as an Entry."""
+    """Reads a file. Returns its whole content as an Entry."""
     try:
         with open(path, encoding="utf-8") as file:
             node = yaml.compose(file, yaml.SafeLoader)
@@ -112,43 +114,30 @@ def read_yaml(path):
 
 
 def read_table(path, columns=None):
-    """Columns of a CSV file with a line of names, among them `time` [s], which increases from row to row.
+    """Reads a CSV file whose first line has the names of the columns. The column `time` [s] must increase.
 
-    columns: which ones are wanted beside the time; None: all.
-    Returns the times, shape (rows,), and a dictionary of the other columns, NaN where a field is empty or `nan`.
+    columns: which ones are read besides `time`; None: all.
+    Returns the times, shape (rows,), and a dictionary of the other columns. Empty fields and `nan` become NaN.
     """
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            names = [name.strip() for name in next(reader, [])]
-            rows = [(reader.line_num, row) for row in reader if row]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError("%s: cannot be read: %s" % (path, getattr(error, "strerror", None) or error)) from None
+        table = read_csv(path, lambda names: _wanted(path, names, columns))
+    except ResultsError as error:
+        raise InputError(str(error)) from None
+    if not len(table.rows):
+        raise InputError("%s: expected rows of numbers below the names of columns, got none" % path)
+    for row, column in numpy.argwhere(numpy.isinf(table.rows))[:1]:
+        raise InputError("%s:%d: %s: expected a finite number, got '%g'"
+                         % (path, table.lines[row], table.names[column], table.rows[row, column]))
+    _check_times(path, table.rows[:, 0], table.lines)
+    return table.rows[:, 0], dict(zip(table.names[1:], table.rows.T[1:]))
+
+
+def _wanted(path, names, columns):
     wanted = ["time"] + [name for name in (names if columns is None else columns) if name != "time"]
     for name in wanted:
         if names.count(name) != 1:
             raise InputError("%s:1: expected one column '%s', got the columns %s" % (path, name, ", ".join(names)))
-    table = numpy.array([_numbers(path, line, row, names, wanted) for line, row in rows]).reshape(-1, len(wanted))
-    if not len(table):
-        raise InputError("%s: expected rows of numbers below the names of columns, got none" % path)
-    _check_times(path, table[:, 0], [line for line, _ in rows])
-    return table[:, 0], dict(zip(wanted[1:], table.T[1:]))
-
-
-def _numbers(path, line, row, names, wanted):
-    if len(row) != len(names):
-        raise InputError("%s:%d: expected %d fields, got %d" % (path, line, len(names), len(row)))
-    numbers = []
-    for name in wanted:
-        text = row[names.index(name)].strip()
-        try:
-            value = float(text or "nan")
-        except ValueError:
-            raise InputError("%s:%d: %s: expected a number, got '%s'" % (path, line, name, text)) from None
-        if math.isinf(value):
-            raise InputError("%s:%d: %s: expected a finite number, got '%s'" % (path, line, name, text))
-        numbers.append(value)
-    return numbers
+    return wanted
 
 
 def _check_times(path, times, lines):

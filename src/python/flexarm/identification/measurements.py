@@ -1,4 +1,4 @@
-"""Measured histories, in simulated time."""
+"""Reads measured columns, and converts their times to simulated time."""
 
 import typing
 
@@ -10,7 +10,7 @@ from .plan import Column
 
 
 class Measurement(typing.NamedTuple):
-    """A column that was measured."""
+    """A measured column."""
 
     column: Column
     times: numpy.ndarray  # simulated, not decreasing, shape (values,) [s]
@@ -18,7 +18,7 @@ class Measurement(typing.NamedTuple):
 
 
 def read_measurements(path, plan):
-    """What a CSV file or a bag has of the plan's columns while the scene is simulated.
+    """Reads the plan's columns from a CSV file or a bag, within the simulated time.
 
     Returns measurements in the plan's order, and the time of the data at which the scene starts [s].
     Raises InputError.
@@ -34,7 +34,7 @@ def read_measurements(path, plan):
 
 
 def _cut(column, path, times, values, begin, until):
-    """Numbers alone, of the time that is simulated, with what round-off of times makes of its ends."""
+    """The finite values within the simulated time, whose ends allow for round-off."""
     simulated = times - begin
     slack = 1e-9 * (1 + abs(begin))
     used = numpy.isfinite(values) & (simulated >= -slack) & (simulated <= until + slack)

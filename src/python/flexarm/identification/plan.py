@@ -1,4 +1,4 @@
-"""What is to be found from which measurements: the plan's file (docs/identify.md)."""
+"""Reads the plan, which says what should be found from which measurements (docs/identify.md)."""
 
 import os
 import typing
@@ -7,47 +7,47 @@ from .inputs import Entry, InputError, read_yaml
 
 
 class Unknown(typing.NamedTuple):
-    """A number that is to be found: a parameter of the scene, or a coordinate at the start."""
+    """A number that should be found: a parameter of the scene, or a coordinate at the start."""
 
     name: str  # of the parameter, or JOINT/position, JOINT/velocity
-    of_start: bool  # a coordinate at the start
-    start: float  # of the search
-    min: float  # -inf: none
+    of_start: bool  # whether it is a coordinate at the start
+    start: float  # where the search begins
+    min: float  # -inf: no limit
     max: float
-    scale: float  # a change of it that matters, > 0
+    scale: float  # typical size of a change, > 0
 
 
 class Column(typing.NamedTuple):
-    """A column of `flexarm simulate` that was measured."""
+    """A measured column of `flexarm simulate`."""
 
     name: str
     data: str  # its name in the data
-    noise: typing.Optional[float]  # standard deviation of an error of measurement; None: found from the residuals
+    noise: typing.Optional[float]  # standard deviation of the measurement errors; None: estimated from the residuals
     entry: Entry
 
 
 class Commands(typing.NamedTuple):
-    """Where the efforts of the experiment are."""
+    """Where the commanded efforts come from."""
 
-    file: typing.Optional[str]  # None: the bag of the data
+    file: typing.Optional[str]  # None: the bag of the measurements
     topic: typing.Optional[str]  # of a bag
-    joints: typing.Optional[typing.Dict[str, str]]  # column of a CSV file for each joint; None: all, by their names
-    hold: bool  # until the next row; else linear between rows
+    joints: typing.Optional[typing.Dict[str, str]]  # CSV column of each joint; None: all, named as joints
+    hold: bool  # whether an effort holds until the next row; else linear between rows
     entry: Entry
 
 
 class Plan(typing.NamedTuple):
     unknowns: typing.List[Unknown]
-    initial: typing.Dict[str, float]  # coordinates at the start that are known, as in Unknown.name
+    initial: typing.Dict[str, float]  # known coordinates at the start, by names as in Unknown.name
     columns: typing.List[Column]
-    commands: typing.Optional[Commands]  # None: the scene's
-    begin: typing.Optional[float]  # time in the data at which the scene starts [s]; None: that of the first row
-    until: typing.Optional[float]  # simulated time that is looked at [s]; None: all
-    step: typing.Optional[float]  # [s]; None: chosen
+    commands: typing.Optional[Commands]  # None: those of the scene
+    begin: typing.Optional[float]  # time of the data at which the scene starts [s]; None: of the first row
+    until: typing.Optional[float]  # end of the simulated time in use [s]; None: all
+    step: typing.Optional[float]  # [s]; None: chosen automatically
     tolerance: float  # of Newton's method
     difference: float  # by which unknowns are varied, relative to their size
-    forward: bool  # derivatives are sensitivities of runs, where these have them
-    joint_states: str  # topic of a bag
+    forward: bool  # whether derivatives are sensitivities of runs, if these have them
+    joint_states: str  # topic in a bag
 
 
 KEYS = ("parameters", "initial", "columns", "commands", "begin", "until", "step", "tolerance", "difference",
@@ -73,14 +73,14 @@ def read_plan(path, parameters):
             if entry.is_mapping:
                 unknowns.append(_coordinate(entry, name))
             else:
-                initial[name] = entry.number("a number, where it is known, or a mapping with start, where it is not")
+                initial[name] = entry.number("a number if it is known, or a mapping with start if it is unknown")
     if not unknowns:
-        raise InputError("%s: expected something to be found, below 'parameters' or 'initial'" % path)
+        raise InputError("%s: expected at least one unknown, below 'parameters' or 'initial'" % path)
     columns = []
     if "columns" in entries:
         columns = [_column(name, entry) for name, entry in entries["columns"].mapping().items()]
     if not columns:
-        raise InputError("%s: expected columns that were measured, below 'columns'" % path)
+        raise InputError("%s: expected measured columns, below 'columns'" % path)
     optional = _Optional(entries)
     return Plan(unknowns, initial, columns, _commands(path, entries.get("commands")),
                 _begin(entries.get("begin")), optional.positive("until", None), optional.positive("step", None),
@@ -90,7 +90,7 @@ def read_plan(path, parameters):
 
 
 class _Optional:
-    """Numbers of a mapping that need not be there."""
+    """Reads numbers of a mapping that may be missing."""
 
     def __init__(self, entries):
         self._entries = entries
@@ -104,7 +104,7 @@ class _Optional:
 
 def _parameter(entry, name, known):
     if name not in known:
-        raise entry.error("expected a parameter of the scene, of %s" % (", ".join(known) or "which it has none"))
+        raise entry.error("expected a parameter of the scene, of %s" % (", ".join(known) or "which there are none"))
     parameter = known[name]
     lower = -float("inf") if parameter.min is None else parameter.min
     upper = float("inf") if parameter.max is None else parameter.max
@@ -124,7 +124,7 @@ def _coordinate(entry, name):
 
 
 def _unknown(entry, name, of_start, value, lower, upper):
-    """`value`: to begin with, where the plan does not say; `lower`, `upper`: that the plan may not leave."""
+    """`value`: start of the search if the plan gives none; `lower`, `upper`: the widest limits that a plan may set."""
     given = entry.mapping("start", "min", "max", "scale")
     optional = _Optional(given)
     start = optional.number("start", value)
@@ -138,7 +138,7 @@ def _unknown(entry, name, of_start, value, lower, upper):
         raise entry.error("expected a start between %g and %g, got %g" % (least, most, start))
     scale = optional.positive("scale", abs(start) or most - least)
     if not 0 < scale < float("inf"):
-        raise entry.error("expected a key 'scale', as it starts at zero: a change of it that matters")
+        raise entry.error("expected a key 'scale', since it starts at zero: the size of a significant change")
     return Unknown(name, of_start, start, least, most, scale)
 
 
@@ -165,7 +165,7 @@ def _commands(path, entry):
 
 
 def _beside(path, file):
-    """A file that a plan names is looked for in the plan's folder."""
+    """The path of a file that a plan names, which is relative to the plan's folder."""
     return os.path.join(os.path.dirname(path), file)
 
 

@@ -1,4 +1,4 @@
-"""`flexarm identify`: the command line around the search."""
+"""The command `flexarm identify`."""
 
 import argparse
 import os
@@ -25,17 +25,17 @@ DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 128
 def _arguments(arguments):
     parser = argparse.ArgumentParser(
         prog="flexarm identify",
-        description="Finds values of a scene's parameters with which it moves as was measured.")
+        description="Finds the values of a scene's parameters with which its motion fits measurements.")
     parser.add_argument("scene", help="scene file with parameters")
     parser.add_argument("data", help="measurements: a CSV file with a column `time`, or a ROS bag")
-    parser.add_argument("plan", help="what is to be found from which columns, docs/identify.md")
+    parser.add_argument("plan", help="YAML file with the unknowns and the measured columns (docs/identify.md)")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[],
-                        help="values for the scene's parameters in the place of the file's; where they are to be "
-                             "found, the search begins there")
+                        help="values of the scene's parameters, which replace those of the file; for unknowns, the "
+                             "search begins there")
     parser.add_argument("--output",
                         help="file for the scene with the values that were found (SCENE_fitted.urdf); a report "
                              "(.json), residuals (.csv) and a picture (.png) go beside it")
-    parser.add_argument("--workers", type=_count, help="simulations at the same time (one for each processor)")
+    parser.add_argument("--workers", type=_count, help="number of simultaneous simulations (one for each processor)")
     parser.add_argument("--quiet", action="store_true", help="no progress and no tables")
     return parser.parse_args(arguments)
 
@@ -58,7 +58,7 @@ def _settings(texts):
 
 
 class _Outputs:
-    """Where results go, none of which may take the place of an input."""
+    """The output files. Raises InputError if one of them is an input file."""
 
     def __init__(self, arguments):
         stem, extension = os.path.splitext(os.path.basename(arguments.scene))
@@ -71,14 +71,14 @@ class _Outputs:
         inputs = {os.path.realpath(path) for path in (arguments.scene, arguments.data, arguments.plan)}
         for path in files:
             if os.path.realpath(path) in inputs:
-                raise InputError("--output: '%s' would be overwritten, which is read" % path)
+                raise InputError("--output would overwrite '%s', which is read" % path)
             folder = os.path.dirname(path) or "."
             if not os.access(folder, os.W_OK) or os.path.isdir(path):
                 raise InputError("--output: '%s' cannot be written" % path)
 
 
 def _write(path, data):
-    """What was there before stays until all is written."""
+    """Writes a file. An existing file stays until the new one is complete."""
     folder, name = os.path.split(path)
     with tempfile.NamedTemporaryFile(dir=folder or ".", prefix=name, delete=False) as file:
         file.write(data)
@@ -89,7 +89,7 @@ def _write(path, data):
 
 
 def _read(arguments, values):
-    """The experiment of the files that were given, and its plan."""
+    """Reads the input files. Returns the experiment and its plan."""
     scene = read_scene(arguments.scene, parameters=values)
     plan = read_plan(arguments.plan, scene.parameters)
     measurements, begin = read_measurements(arguments.data, plan)
@@ -105,7 +105,7 @@ def _show(experiment):
 
     def show(iteration):
         values = ", ".join("%s %.6g" % pair for pair in zip(names, iteration.values))
-        print("iteration %d, %d simulations: residuals %.4g of the noise, %s"
+        print("iteration %d, %d simulations: residuals %.4g times the noise, %s"
               % (iteration.number, iteration.simulations, iteration.factor, values), file=sys.stderr, flush=True)
 
     return show
@@ -116,7 +116,7 @@ def _interrupt(number, frame):
 
 
 def _keep(arguments, outputs, experiment, values, result):
-    """Writes all files; the names of those."""
+    """Writes all output files. Returns their names."""
     found = {unknown.name: value for unknown, value in zip(experiment.unknowns, result.values) if not unknown.of_start}
     with open(arguments.scene, "rb") as file:
         scene = report.with_values(file.read(), arguments.scene, {**values, **found})
@@ -131,13 +131,13 @@ def _identify(arguments, draw):
     values = _settings(arguments.set)
     outputs = _Outputs(arguments)
     experiment, plan = _read(arguments, values)
-    warnings.simplefilter("ignore", SceneWarning)  # that of the start has been said
+    warnings.simplefilter("ignore", SceneWarning)  # was already shown for the start
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _interrupt)
     show = (lambda iteration: None) if arguments.quiet else _show(experiment)
     result = fit(experiment, plan.difference, arguments.workers, show, plan.forward)
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)  # what was found is written
+        signal.signal(number, signal.SIG_IGN)  # so that the results are written
     files = _keep(arguments, outputs, experiment, values, result)
     if not arguments.quiet:
         print(report.text(experiment, result))
@@ -150,18 +150,18 @@ def _identify(arguments, draw):
     if not arguments.quiet:
         print("\n".join(files))
     if result.signal:
-        print("flexarm: interrupted; the best so far is kept", file=sys.stderr)
+        print("flexarm: interrupted; the best values so far are kept", file=sys.stderr)
         return INTERRUPTED + result.signal
     if not result.is_converged:
-        print("flexarm: %s; the best so far is kept" % result.ending, file=sys.stderr)
+        print("flexarm: %s; the best values so far are kept" % result.ending, file=sys.stderr)
         return FAILED
     return DONE
 
 
 def main(arguments, draw):
-    """Runs the command line; the exit status.
+    """Runs the command line. Returns the exit status.
 
-    draw: `draw(data, picture)` draws the residuals of a CSV file; whether it could.
+    draw: function `draw(data, picture)` that plots the residuals of a CSV file and returns whether it could.
     """
     arguments = _arguments(arguments)
     warnings.showwarning = lambda message, *_: print(message, file=sys.stderr)
@@ -174,7 +174,7 @@ def main(arguments, draw):
         print("flexarm: %s" % error, file=sys.stderr)
         return FAILED
     except Interruption as interruption:
-        print("flexarm: interrupted before the first simulation was over", file=sys.stderr)
+        print("flexarm: interrupted before the first simulation had ended", file=sys.stderr)
         return INTERRUPTED + interruption.number
     except OSError as error:
         print("flexarm: %s" % error, file=sys.stderr)

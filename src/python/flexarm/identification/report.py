@@ -1,4 +1,4 @@
-"""What was found, for people and for programs."""
+"""Reports results as text, JSON and CSV."""
 
 import csv
 import io
@@ -13,27 +13,27 @@ from .certainty import succession
 from .inputs import InputError
 
 HIGH_CORRELATION = 0.99
-# Residuals of a model that is right are as large as the noise, and independent. Far below it, there is none:
-# measurements are those of another simulation.
+# With a correct model, residuals are as large as the noise, and independent. Much smaller ones are no noise: then the
+# measurements come from another simulation.
 LARGE_RESIDUALS, SMALL_RESIDUALS = 2.0, 0.1
 HIGH_SUCCESSION = 0.5
 
 
 def doubts(experiment, fit):
-    """What makes a result doubtful, in sentences."""
+    """Reasons why a result is doubtful, as sentences."""
     names = [unknown.name for unknown in experiment.unknowns]
     found = []
     for group in fit.certainty.undetermined:
         if len(group) == 1:
             found.append("the measurements do not depend on '%s'" % names[group[0]])
         else:
-            found.append("the measurements do not tell %s apart: they can be changed together so that nothing is seen "
-                         "of it" % " and ".join("'%s'" % names[i] for i in group))
+            found.append("the measurements cannot distinguish %s: they can be changed together without a visible "
+                         "effect" % " and ".join("'%s'" % names[i] for i in group))
     for i, unknown in enumerate(experiment.unknowns):
         if fit.at_limit[i]:
-            found.append("'%s' is at its limit: standard errors do not hold" % unknown.name)
+            found.append("'%s' is at its limit: standard errors are not valid" % unknown.name)
         elif unknown.scale < fit.certainty.standard_errors[i] < math.inf:
-            found.append("the measurements say little of '%s': its standard error is larger than its size"
+            found.append("the measurements say little about '%s': its standard error is larger than its size"
                          % unknown.name)
         for j in range(i):
             if abs(fit.certainty.correlations[i, j]) > HIGH_CORRELATION:
@@ -41,18 +41,18 @@ def doubts(experiment, fit):
                              % (names[j], names[i], fit.certainty.correlations[i, j]))
     for column in columns(experiment, fit):
         if column["noise_is_given"] and column["rms"] > LARGE_RESIDUALS * column["noise"]:
-            found.append("residuals of '%s' are %.3g times its noise: the scene moves otherwise than what was "
-                         "measured, or there is more noise" % (column["name"], column["rms"] / column["noise"]))
-        # Independent residuals are beyond it once in 15000 times.
+            found.append("residuals of '%s' are %.3g times its noise: the scene's motion differs from the "
+                         "measured one, or there is more noise" % (column["name"], column["rms"] / column["noise"]))
+        # Independent residuals exceed this bound once in 15000 times.
         is_noisy = not column["noise_is_given"] or column["rms"] > SMALL_RESIDUALS * column["noise"]
         if is_noisy and column["succession"] > max(HIGH_SUCCESSION, 4 / math.sqrt(column["values"])):
-            found.append("residuals of '%s' go together from one to the next (correlation %.2f): they are no noise, "
+            found.append("successive residuals of '%s' are correlated (correlation %.2f): they are not noise, "
                          "and standard errors are too small" % (column["name"], column["succession"]))
     return found
 
 
 def columns(experiment, fit):
-    """A dictionary for each column."""
+    """A dictionary of results for each column."""
     residuals = fit.predicted - experiment.measured
     return [{
         "name": measurement.column.name,
@@ -66,7 +66,7 @@ def columns(experiment, fit):
 
 
 def text(experiment, fit):
-    """Tables and sentences."""
+    """Tables and sentences for people."""
     lines = ["%-28s %14s %14s %10s %14s  %s" % ("unknown", "estimate", "std. error", "relative", "start", "limits")]
     for unknown, value, error in zip(experiment.unknowns, fit.values, fit.certainty.standard_errors):
         part = "%.3g %%" % (100 * error / abs(value)) if value and math.isfinite(error) else "-"
@@ -99,12 +99,12 @@ def _limits(unknown):
 
 
 def _number(value):
-    """JSON has neither NaN nor infinity."""
+    """The number, or None for NaN and infinity, which JSON does not have."""
     return float(value) if math.isfinite(value) else None
 
 
 def as_json(experiment, fit, files):
-    """Everything, for programs; `files`: a dictionary that names what was read."""
+    """Everything as JSON. `files`: a dictionary of the input files' names, which is included."""
     data = {
         **files,
         "converged": fit.is_converged,
@@ -132,7 +132,7 @@ def as_json(experiment, fit, files):
 
 
 def as_csv(experiment, fit):
-    """Measured and simulated values, one row for each."""
+    """Measured and simulated values as CSV, one row for each value."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(["column", "unit", "time", "measured", "simulated", "noise"])
@@ -142,15 +142,15 @@ def as_csv(experiment, fit):
     return file.getvalue()
 
 
-# A start tag as far as its value.
+# A start tag of <parameter>, up to and including its value.
 UNTIL_VALUE = re.compile(rb"""<parameter(?:\s+[^\s=]+\s*=\s*(?:"[^"]*"|'[^']*'))*?\s+value\s*=\s*(["'])(.*?)\1""",
                          re.DOTALL)
 
 
 def with_values(scene, path, values):
-    """The bytes of a scene's file with other values of parameters, every other byte as it was.
+    """The bytes of a scene's file with other values of parameters; all other bytes stay as they are.
 
-    scene: the bytes. path: for errors. values: by names of parameters.
+    scene: the bytes. path: for error messages. values: by names of parameters.
     """
     places = {}
     parser = expat.ParserCreate()

@@ -8,10 +8,10 @@ import time
 import warnings
 
 SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
-DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 128  # exit status, as of the other commands
+DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 128  # exit status, as of flexarm's other commands
 
 try:
-    from . import cluster, processes
+    from . import cluster, pages, processes
     from .input import InputError
     from .plan import read_plan
     from .progress import ProgressBar, duration_text
@@ -21,7 +21,7 @@ except ModuleNotFoundError as error:
 
 
 class Interrupted(Exception):
-    """A signal wants the program to end; its number."""
+    """A signal has ended the program; the argument is its number."""
 
 
 def interrupt(number, _frame):
@@ -37,25 +37,31 @@ def whole_number(least):
     return number
 
 
+def run_numbers(text):
+    return [whole_number(1)(number) for number in text.split(",")]
+
+
 def read_arguments(words):
     parser = argparse.ArgumentParser(
         prog="flexarm sweep", description="Runs a scene many times, with the parameters of a plan (docs/sweep.md).")
     parser.add_argument("scene", help="scene file, with parameters")
-    parser.add_argument("plan", help="YAML file: which values parameters have, and what is measured")
-    parser.add_argument("--output", help="CSV file for the results, which goes on where it was (PLAN_results.csv)")
+    parser.add_argument("plan", help="YAML file with the values of parameters and the quantities to be measured")
+    parser.add_argument("--output", help="CSV file for the results; an existing one is continued (PLAN_results.csv)")
     places = parser.add_mutually_exclusive_group()
-    places.add_argument("--workers", type=whole_number(1), help="processes (one for each processor)")
+    places.add_argument("--workers", type=whole_number(1), help="number of processes (one for each processor)")
     places.add_argument("--scheduler", metavar="ADDRESS",
-                        help="of a Dask scheduler, whose workers do the runs; or its scheduler file, FILE.json")
+                        help="address of a Dask scheduler, whose workers do the runs, or its scheduler file, FILE.json")
     parser.add_argument("--retries", type=whole_number(0), default=2,
-                        help="how often a run is repeated whose process died (2)")
-    parser.add_argument("--repeat-failed", action="store_true", help="does runs again that failed")
+                        help="how often a run is repeated if its process dies (2)")
+    parser.add_argument("--repeat-failed", action="store_true", help="repeats runs that failed")
+    parser.add_argument("--show", metavar="RUN,...", type=run_numbers, default=[],
+                        help="repeats these runs, and writes a page that plays them side by side in a browser")
     parser.add_argument("--quiet", action="store_true", help="no progress bar and no summary")
     return parser.parse_args(words)
 
 
 def output_of(arguments):
-    """Refuses to write over what is read."""
+    """The output file; raises InputError if it is one of the input files."""
     stem = os.path.splitext(os.path.basename(arguments.plan))[0]
     output = arguments.output or stem + "_results.csv"
     for path in (arguments.scene, arguments.plan):
@@ -65,7 +71,7 @@ def output_of(arguments):
 
 
 def runs_of(plan, output, numbers):
-    """Arguments of perform() for each of them: the number, the parameters, and the file of the history."""
+    """The arguments of perform() for each of the runs: number, parameters, and file of the history."""
     path = ""
     if plan.job.history:
         folder = os.path.abspath(os.path.splitext(output)[0] + "_histories")
@@ -82,6 +88,9 @@ def sweep(arguments):
         plan = read_plan(arguments.scene, arguments.plan)
     for warning in caught:
         print(warning.message, file=sys.stderr)
+    for number in arguments.show:
+        if number > len(plan.design.rows):
+            raise InputError("--show: expected numbers of runs up to %d, got %d" % (len(plan.design.rows), number))
     results = Results(output, plan, arguments.repeat_failed)
     begin, there = time.monotonic(), len(results.rows)
     bar = ProgressBar(there, len(plan.design.rows), not arguments.quiet)
@@ -94,7 +103,7 @@ def sweep(arguments):
     failures = results.failures()
     try:
         for number, outcome in outcomes:
-            signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)  # a row is written whole
+            signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)  # so that rows are always complete
             results.add(number, outcome)
             signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
             failures += bool(outcome.failure)
@@ -102,7 +111,7 @@ def sweep(arguments):
         results.finish()
     except (Interrupted, OSError):
         bar.clear()
-        print("flexarm: %d of %d runs are in '%s'; the same command does the others"
+        print("flexarm: %d of %d runs are in '%s'; the same command makes the others"
               % (len(results.rows), len(plan.design.rows), output), file=sys.stderr)
         raise
     finally:
@@ -113,6 +122,10 @@ def sweep(arguments):
         print("%s: %d runs, %d of them now, in %s%s"
               % (output, len(results.rows), len(results.rows) - there, duration_text(time.monotonic() - begin),
                  "; %d failed, the column 'failure' says why" % failures if failures else ""))
+    if arguments.show:
+        page = os.path.splitext(output)[0] + ".html"
+        pages.write_page(page, plan, arguments.show)
+        print("%s shows it in a browser" % page)
     return DONE
 
 

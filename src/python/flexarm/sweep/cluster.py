@@ -1,4 +1,4 @@
-"""Runs on the workers of a Dask scheduler, on any number of machines that see the same files."""
+"""Makes runs on the workers of a Dask scheduler, on any number of machines with a common file system."""
 
 import collections
 import itertools
@@ -6,12 +6,12 @@ import itertools
 from .input import InputError
 from .run import failed, perform
 
-# Runs that the scheduler has at a time: more than workers of any cluster, few enough to be kept in mind.
+# Number of runs that the scheduler has at a time: more than any cluster has workers, but few enough for its memory.
 IN_FLIGHT = 2000
 
 
 def connect(address):
-    """`address`: tcp://HOST:PORT, or the file FILE.json that a scheduler writes, which is waited for."""
+    """Connects to `address`: tcp://HOST:PORT, or a file FILE.json that a scheduler writes; waits for that file."""
     try:
         from distributed import Client
     except ImportError:
@@ -25,18 +25,18 @@ def connect(address):
 
 
 def reason_of(error):
-    """Dask's own text of a death has names that differ from sweep to sweep."""
+    """Why a run failed. Dask's own text for a dead worker contains names that differ from sweep to sweep."""
     if type(error).__name__ == "KilledWorker":
         return "its worker died more often than the scheduler allows"
     return "%s: %s" % (type(error).__name__, error)
 
 
 def perform_all(job, runs, address, retries):
-    """Yields pairs of the number of a run and its Outcome, as they come.
+    """Yields pairs (number of the run, Outcome) in the order in which runs end.
 
-    runs: arguments of perform(), the number being the first. A run whose worker dies is repeated by the scheduler, as
-    often as its setting `allowed-failures` says; it counts all that wait for that worker. It is given them again
-    `retries` times; then that is the outcome.
+    runs: arguments of perform(), of which the number is the first. If a worker dies, the scheduler repeats its run, as
+    often as its setting `allowed-failures` allows; it counts each run that waits for that worker. After that the run
+    is submitted again, up to `retries` times. Then the run has failed.
     """
     with connect(address) as client:
         from distributed import KilledWorker, as_completed
@@ -45,7 +45,7 @@ def perform_all(job, runs, address, retries):
         runs = iter(runs)
 
         def submit(run):
-            # Arguments are small, and go along with each run: what is scattered dies with its worker.
+            # Arguments are small, so each run gets its own. Data that is scattered would die with its worker.
             future = client.submit(perform, job, *run, pure=False)
             submitted[future.key] = run
             return future

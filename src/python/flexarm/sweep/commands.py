@@ -1,4 +1,4 @@
-"""Efforts that are commanded in all runs: constant ones, or pulses as those of config/demo_commands.yaml."""
+"""Efforts that are commanded in all runs: constant ones, or pulses as in config/demo_commands.yaml."""
 
 import dataclasses
 import os
@@ -10,7 +10,7 @@ from .input import read_yaml
 
 @dataclasses.dataclass(frozen=True)
 class Pulse:
-    """A constant effort on one joint."""
+    """A constant effort on one joint for some time."""
 
     joint: str
     begin: float  # [s]
@@ -38,9 +38,9 @@ def read_pulses(entry, joints):
 
 
 def read_commands(entry, joints, until):
-    """`commands: {joint: effort}`, or the name of a file, from the folder of the plan. A tuple of Pulse.
+    """Reads `commands: {joint: effort}`, or the name of a file relative to the plan's folder. Returns a tuple of Pulse.
 
-    joints: those that take efforts. until: the end of constant ones [s].
+    joints: those that take efforts. until: when constant efforts end [s].
     """
     if entry.is_mapping():
         return tuple(Pulse(joint_of(name, joints, effort.error), 0.0, until, effort.number())
@@ -52,16 +52,16 @@ def read_commands(entry, joints, until):
 
 
 def effort_rows(pulses, steps, step):
-    """Names of joints and efforts for each step, shape (steps, joints).
+    """Returns the names of the joints, and their efforts in each step, shape (steps, joints).
 
-    Those of a step are the mean of the pulses over it, which has their impulse whatever the step.
+    The effort of a step is the mean of the pulses over the step, so that the impulse is exact for any step.
     """
     joints = list(dict.fromkeys(pulse.joint for pulse in pulses))
     efforts = numpy.zeros((steps, len(joints)))
     begin = step * numpy.arange(steps)
     for pulse in pulses:
         part = (numpy.minimum(begin + step, pulse.end) - numpy.maximum(begin, pulse.begin)) / step
-        # But for round-off, what begins and ends with a step has all of it or nothing.
+        # But for round-off, a pulse that begins and ends with steps fills each step completely or not at all.
         part = numpy.where(part < 1e-6, 0, numpy.where(part > 1 - 1e-6, 1, part))
         efforts[:, joints.index(pulse.joint)] += pulse.effort * part
     return joints, efforts

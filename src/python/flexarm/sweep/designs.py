@@ -1,4 +1,4 @@
-"""Designs of experiments: which values the parameters of a scene have in each run."""
+"""Designs of experiments: the values of the scene's parameters in each run."""
 
 import csv
 import dataclasses
@@ -17,7 +17,7 @@ MOST_RUNS = 1000000
 
 @dataclasses.dataclass(frozen=True)
 class Values:
-    """A list, of which a sample takes one."""
+    """A list of values, from which a sample takes one."""
 
     values: tuple
 
@@ -30,11 +30,11 @@ class Values:
 
 @dataclasses.dataclass(frozen=True)
 class Range:
-    """Numbers between two, even or even in their logarithms."""
+    """Numbers between two ends, evenly spaced on a linear or logarithmic scale."""
 
     first: float
     last: float
-    count: typing.Optional[int]  # of a grid
+    count: typing.Optional[int]  # for a grid only
     is_logarithmic: bool
 
     def points(self):
@@ -46,17 +46,17 @@ class Range:
             value = self.first * (self.last / self.first) ** part
         else:
             value = self.first + (self.last - self.first) * part
-        return min(max(value, min(self.first, self.last)), max(self.first, self.last))  # whatever round-off does
+        return min(max(value, min(self.first, self.last)), max(self.first, self.last))  # round-off
 
 
 @dataclasses.dataclass(frozen=True)
 class Design:
     names: tuple  # of the parameters
-    rows: tuple  # of a tuple of values for each run
+    rows: tuple  # a tuple of values for each run
 
 
 def check_limits(parameter, value, error):
-    """`error`: of a text, as Entry.error()."""
+    """Raises error(text), as of Entry.error(), if the value is outside the parameter's limits."""
     if parameter.min is not None and value < parameter.min or parameter.max is not None and value > parameter.max:
         limits = [text % limit for text, limit in (("at least %g", parameter.min), ("at most %g", parameter.max))
                   if limit is not None]
@@ -70,7 +70,7 @@ def parameter_of(name, parameters, error):
 
 
 def read_axis(entry, parameter, of_grid):
-    """`parameter: 3`, `parameter: [1, 2, 5]` or `parameter: {from: 1, to: 2, count: 5, scale: log}`."""
+    """Reads `parameter: 3`, `parameter: [1, 2, 5]` or `parameter: {from: 1, to: 2, count: 5, scale: log}`."""
     if entry.is_list():
         entries = entry.entries()
         if not entries:
@@ -101,7 +101,7 @@ def latin_hypercube(dimension, runs, seed):
 
 def sobol(dimension, runs, seed):
     sampler = _quasi_monte_carlo().Sobol(dimension, seed=seed)
-    # Of the whole power of two; a part of it is less even, which docs/sweep.md says in place of scipy's warning.
+    # The first points of a full power of two, which are less even than all. docs/sweep.md says so; scipy would warn.
     return sampler.random_base2(math.ceil(math.log2(runs)))[:runs]
 
 
@@ -116,7 +116,7 @@ def _quasi_monte_carlo():
     try:
         from scipy.stats import qmc
     except ImportError:
-        raise InputError("this design needs Debian's python3-scipy, which is not installed") from None
+        raise InputError("this design needs scipy 1.7 or later (Debian's python3-scipy)") from None
     return qmc
 
 
@@ -130,7 +130,7 @@ def read_axes(entry, parameters, of_grid):
 
 
 def read_grid(entry, parameters):
-    """Every value of each parameter with every one of the others; the last one changes from run to run."""
+    """Reads a grid: all combinations of the parameters' values; the last parameter varies fastest."""
     fields = entry.fields(["kind", "parameters"])
     axes = read_axes(fields["parameters"], parameters, of_grid=True)
     count = math.prod(axis.count if isinstance(axis, Range) else len(axis.values) for axis in axes.values())
@@ -174,12 +174,16 @@ def read_rows(entry, parameters):
 
 
 def read_table(path, parameters):
-    """A CSV file with a line of names; more columns than parameters are an error."""
+    """Reads a CSV file whose first line has the names of parameters. Other columns are an error."""
     lines = csv.reader(io.StringIO(read_text(path)))
+    try:
+        all_fields = [(lines.line_num, fields) for fields in lines]
+    except csv.Error as problem:
+        raise InputError("%s:%d: %s" % (path, lines.line_num, problem)) from None
     names, rows = None, []
-    for fields in lines:
+    for line, fields in all_fields:
         def error(text):
-            return InputError("%s:%d: %s" % (path, lines.line_num, text))
+            return InputError("%s:%d: %s" % (path, line, text))
 
         if not fields:
             continue
@@ -210,7 +214,7 @@ def read_number(name, text, parameters, error):
 
 
 def read_design(entry, parameters):
-    """`parameters`: those of the scene, by name. Raises InputError."""
+    """Reads a design. `parameters`: those of the scene, by name. Raises InputError."""
     kinds = ["grid", "rows", *SAMPLES]
     kind = dict(entry.items("a mapping with 'kind'")).get("kind")
     if kind is None:

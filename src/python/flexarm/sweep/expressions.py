@@ -1,4 +1,4 @@
-"""Expressions of columns of results and of parameters, evaluated for all rows at once; nothing else can be in them."""
+"""Expressions of result columns and parameters, evaluated for all rows at once. Other functions are not allowed."""
 
 import ast
 import functools
@@ -15,7 +15,7 @@ FUNCTIONS = {
     "sinh": numpy.sinh, "cosh": numpy.cosh, "tanh": numpy.tanh,
     "floor": numpy.floor, "ceil": numpy.ceil, "min": numpy.minimum, "max": numpy.maximum,
 }
-ARGUMENTS = {"hypot": 2, "atan2": 2, "min": 2, "max": 2}  # of others: one
+ARGUMENTS = {"hypot": 2, "atan2": 2, "min": 2, "max": 2}  # number of arguments, if it is not 1
 CONSTANTS = {"pi": numpy.pi}
 OPERATORS = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: numpy.divide, ast.Pow: numpy.power,
@@ -23,7 +23,7 @@ OPERATORS = {
     ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
     ast.And: numpy.logical_and, ast.Or: numpy.logical_or,
 }
-DEEPEST = 100  # operations inside of each other
+DEEPEST = 100  # greatest depth of nested operations
 
 
 class ExpressionError(ValueError):
@@ -31,15 +31,15 @@ class ExpressionError(ValueError):
 
 
 class Expression:
-    """`text` with names of `columns` as they are (joint/elbow/position), of `parameters`, numbers, pi, and operators.
+    """An expression with names of `columns` (joint/elbow/position) and `parameters`, numbers, operators and functions.
 
-    Columns stand in place of the longest name that fits: `probe/tip/x/2` is half of `probe/tip/x`.
-    Raises ExpressionError. used: names of the columns in it.
+    The longest name that fits is taken as the column: `probe/tip/x/2` is half of `probe/tip/x`.
+    Raises ExpressionError. used: names of the columns in the expression.
     """
 
     def __init__(self, text, columns, parameters):
         self.text = text
-        prefix = "c_"  # of what stands for columns, so that no other name is like it
+        prefix = "c_"  # of the names that replace columns, chosen so that the text has no such name
         while prefix in text:
             prefix = "_" + prefix
         names = {}
@@ -62,17 +62,17 @@ class Expression:
 
     def _check(self, node, parameters, depth=0):
         if depth > DEEPEST:
-            raise ExpressionError("expected at most %d operations inside of each other in '%s'" % (DEEPEST, self.text))
+            raise ExpressionError("expected at most %d nested operations in '%s'" % (DEEPEST, self.text))
         for part in self._parts(node, parameters):
             self._check(part, parameters, depth + 1)
 
     def _parts(self, node, parameters):
-        """What an operation is made of; an error for what is none of those that are allowed."""
+        """The operands of an operation; raises ExpressionError if the operation is not allowed."""
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):
             return []
         if isinstance(node, ast.Name):
             if node.id not in self._names and node.id not in parameters and node.id not in CONSTANTS:
-                raise ExpressionError("'%s' is no column and no parameter" % self._whole_name(node.id))
+                raise ExpressionError("'%s' is neither a column nor a parameter" % self._whole_name(node.id))
             return []
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._arguments(node.func.id, node.args)
@@ -90,13 +90,13 @@ class Expression:
                               "in '%s'" % (", ".join(FUNCTIONS), self.text))
 
     def _whole_name(self, part):
-        """As the user wrote it: of joint/elbwo/position, not `joint` alone."""
+        """The whole name as in the text: joint/elbwo/position rather than `joint`, for error messages."""
         match = re.search(r"(?<!\w)%s(?:/\w+)*" % re.escape(part), self.text)
         return match.group() if match else part
 
     def _arguments(self, function, arguments):
         if function not in FUNCTIONS:
-            raise ExpressionError("'%s' is none of the functions [%s]" % (function, ", ".join(FUNCTIONS)))
+            raise ExpressionError("'%s' is not one of the functions [%s]" % (function, ", ".join(FUNCTIONS)))
         expected = ARGUMENTS.get(function, 1)
         if len(arguments) != expected:
             raise ExpressionError("%s(): expected %d argument%s, got %d"
@@ -104,7 +104,7 @@ class Expression:
         return arguments
 
     def evaluate(self, columns, parameters):
-        """Of arrays of one length by the names of columns, and numbers; an array of that length."""
+        """The values, an array. `columns`: arrays of the same length by name; `parameters`: numbers by name."""
         values = {**CONSTANTS, **parameters, **{name: columns[column] for name, column in self._names.items()}}
         with numpy.errstate(all="ignore"):
             result = self._value(self._tree, values)

@@ -1,17 +1,17 @@
-"""The columns of one run as a file, as `flexarm simulate --output` has them."""
+"""Writes the columns of one run to a file, in the formats of `flexarm simulate --output`."""
 
 import os
 import threading
 
 import numpy
 
-HDF5_LOCK = threading.Lock()  # the library is not made for threads, of which Dask's workers may have several
+HDF5_LOCK = threading.Lock()  # the HDF5 library is not thread-safe, and Dask's workers may have several threads
 
 
 def write_history(path, history, columns, units, simulation, number, parameters):
-    """Writes the file whole, or what was there before stays.
+    """Writes a complete file; if that fails, an existing file stays as it was.
 
-    history: of the plan. columns: arrays by name, of which it keeps some. units: by name.
+    history: of the plan. columns: arrays by name, of which `history` selects some. units: by name.
     """
     kept = {name: columns[name] for name in history.columns}
     unfinished = "%s.%d.unfinished" % (path, os.getpid())
@@ -42,7 +42,7 @@ def write_hdf5(path, columns, units, attributes):
     with h5py.File(path, "w") as file:
         file.attrs.update(attributes)
         for name, values in columns.items():
-            # As the command line's writer has it; a run is one chunk.
-            data = file.create_dataset(name, data=values, chunks=values.shape, compression="gzip",
+            # Settings as in the command line's writer, but the whole run is one chunk.
+            data = file.create_dataset(name, data=values, chunks=values.shape, compression="gzip", track_times=False,
                                        compression_opts=1, shuffle=True)
             data.attrs["name"], data.attrs["unit"] = name, units[name]

@@ -1,4 +1,4 @@
-"""Entries of a YAML file that know where they stand, so that errors can say it."""
+"""Entries of a YAML file that know their file and line, for error messages."""
 
 import math
 
@@ -6,11 +6,11 @@ import yaml
 
 
 class InputError(Exception):
-    """What the user gave cannot be used; the text says what, where, and what was expected."""
+    """The user's input cannot be used. The text says what is wrong, where, and what was expected."""
 
 
 class Entry:
-    """A node of a file; its values are asked for by what is expected there, anything else is an InputError."""
+    """A node of a file. Its methods return the node's value as a certain type, or raise InputError."""
 
     def __init__(self, node, file, key=""):
         self.node, self.file, self.key = node, file, key
@@ -34,7 +34,7 @@ class Entry:
         return isinstance(self.node, yaml.MappingNode)
 
     def items(self, expected="a mapping"):
-        """Pairs of a name and its Entry, in the order of the file, none of them twice."""
+        """Pairs (name, Entry) in the order of the file; an error if a name is repeated."""
         if not self.is_mapping():
             raise self.unexpected(expected)
         entries = {}
@@ -46,7 +46,7 @@ class Entry:
         return list(entries.items())
 
     def fields(self, required, optional=()):
-        """A dictionary of entries by name, of which there are the `required` ones and no others than `optional`."""
+        """A dictionary of entries by name. All `required` names must exist; only `optional` ones may exist besides."""
         known = list(required) + list(optional)
         entries = dict(self.items("a mapping of " + ", ".join(known)))
         for name, entry in entries.items():
@@ -110,7 +110,7 @@ def read_text(path):
 
 
 def read_yaml(path):
-    """The Entry of a file's content."""
+    """Reads a file. Returns its content as an Entry."""
     try:
         node = yaml.compose(read_text(path), Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as error:

@@ -1,4 +1,4 @@
-"""Numbers that a run is judged by, each made of an expression over time."""
+"""Measures of a run: numbers that are computed from an expression over time."""
 
 import dataclasses
 import math
@@ -10,12 +10,12 @@ from .expressions import Expression, ExpressionError
 
 
 def integral_mean(time, values):
-    """The integral by the trapezoidal rule, over the duration: rows need not be even."""
+    """The integral by the trapezoidal rule, divided by the duration. Rows need not be evenly spaced."""
     return numpy.trapz(values, time) / (time[-1] - time[0]) if len(time) > 1 else values[0]
 
 
 def settling_time(time, values, band, target):
-    """From which row on all are within the band [s]; NaN: the last one is not."""
+    """The time from which on all values are within the band [s]; NaN if the last value is outside."""
     outside = numpy.flatnonzero(~(abs(values - target) <= band))
     if len(outside) == 0:
         return time[0]
@@ -30,10 +30,10 @@ class Measure:
     options: typing.Mapping[str, float]
 
     def evaluate(self, columns, parameters):
-        """columns: arrays by names, "time" among them; parameters: numbers by names. A number; NaN: there is none."""
+        """The measure; NaN: undefined. columns: arrays by name, including "time". parameters: numbers by name."""
         values = self.expression.evaluate(columns, parameters)
         time = columns["time"]
-        # Times of rows are sums of steps: those at an end of the window are in it, whatever their last digits.
+        # Times of rows are sums of steps with round-off: rows at the ends of the window shall count.
         margin = 1e-9 * time[-1]
         chosen = (time >= self.options.get("from", 0) - margin) & (time <= self.options.get("to", math.inf) + margin)
         if not chosen.any():
@@ -42,8 +42,8 @@ class Measure:
 
 
 class Kind(typing.NamedTuple):
-    reduce: typing.Callable  # of times, values and options
-    required: tuple = ()  # options
+    reduce: typing.Callable  # function of times, values and options
+    required: tuple = ()  # names of options
     optional: tuple = ()
 
 
@@ -62,7 +62,7 @@ KINDS = {
 
 
 def read_measure(name, entry, until, columns, parameters):
-    """`name: {kind: expression, option: number, ...}`"""
+    """Reads `name: {kind: expression, option: number, ...}`."""
     kinds = [key for key, _ in entry.items("a mapping with one of [%s]" % ", ".join(KINDS)) if key in KINDS]
     if len(kinds) != 1:
         raise entry.error("expected one of [%s] in it, got %s"

@@ -1,4 +1,4 @@
-"""What a file says of many runs: their parameters, how long they are, and what is measured in each."""
+"""Reads a plan of many runs: their parameters, their duration, and what is measured."""
 
 import dataclasses
 import hashlib
@@ -17,7 +17,7 @@ from .measures import Measure, read_measure
 
 @dataclasses.dataclass(frozen=True)
 class History:
-    """Which columns are kept of each run."""
+    """Which columns of each run are saved, and in which format."""
 
     format: str  # "hdf5" or "csv"
     columns: tuple  # names
@@ -25,7 +25,7 @@ class History:
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """What all runs have in common: it goes to those who perform them."""
+    """What all runs have in common; is sent to the processes that make runs."""
 
     scene: str  # path
     until: float  # [s]
@@ -39,17 +39,17 @@ class Job:
 class Plan:
     job: Job
     design: Design
-    scene_hash: str  # of the scene, and of the tables that it names
-    plan_hash: str  # of all that the plan says
+    scene_hash: str  # of the scene's file, and of the tables to which it refers
+    plan_hash: str  # of everything that the plan says
 
     @property
     def columns(self):
-        """Of the results."""
+        """Columns of the results."""
         return ["run", *self.design.names, *(measure.name for measure in self.job.measures), "failure"]
 
 
 def read_scene(path):
-    """Its Simulation, with the values of the file."""
+    """The simulation of a scene, with the parameters' values in the file."""
     try:
         return flexarm.Simulation(flexarm.read_scene(path))
     except flexarm.SceneError as error:
@@ -57,7 +57,7 @@ def read_scene(path):
 
 
 def scene_hash(path, scene):
-    """Also of tables that it names, which are in the identity."""
+    """A hash of the scene's file and of its identity, which includes the tables to which it refers."""
     with open(path, "rb") as file:
         return digest(file.read() + scene.identity.encode())
 
@@ -78,14 +78,14 @@ def read_measures(entry, design, until, columns, parameters):
 
 
 def format_of(entry):
-    """Of histories; with what it needs."""
+    """The format of histories; an error if a package that it needs is missing."""
     if entry.choice(["hdf5", "csv"]) == "hdf5" and importlib.util.find_spec("h5py") is None:
         raise entry.error("HDF5 needs Debian's python3-h5py, which is not installed")
     return entry.text()
 
 
 def read_history(entry, simulation):
-    """`history: hdf5`, or `history: {format: hdf5, columns: [pattern, ...]}`"""
+    """Reads `history: hdf5`, or `history: {format: hdf5, columns: [pattern, ...]}`."""
     if not entry.is_mapping():
         return History(format_of(entry), tuple(name for name, _ in simulation.columns()))
     fields = entry.fields(["format"], ["columns"])
@@ -100,14 +100,14 @@ def read_history(entry, simulation):
 
 
 def read_plan(scene_path, path):
-    """Raises InputError."""
+    """Reads a plan. Raises InputError."""
     simulation = read_scene(scene_path)
     scene = simulation.scene
     parameters = {parameter.name: parameter for parameter in scene.parameters}
     columns = [name for name, _ in simulation.columns()]
     fields = read_yaml(path).fields(["design", "until"], ["every", "commands", "measures", "history"])
     if not parameters:
-        raise InputError("%s: expected a scene with a <parameter>, of which a plan gives values" % scene_path)
+        raise InputError("%s: expected a scene with a <parameter> to which the plan gives values" % scene_path)
     design = read_design(fields["design"], parameters)
     until = fields["until"].positive()
     every = fields["every"].count() if "every" in fields else 1

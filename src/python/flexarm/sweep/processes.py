@@ -1,4 +1,4 @@
-"""Runs in processes of this machine, each of which may die without harm to the others."""
+"""Makes runs in processes of this machine. If a process dies, the others are not affected."""
 
 import collections
 import multiprocessing
@@ -9,8 +9,8 @@ from .run import failed, perform
 
 
 def work(job, connection):
-    """What a process does: performs what it is sent, until there is nothing more or nobody."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; who has started this one decides
+    """The main function of a process: makes the runs that it receives, until the connection is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the parent decides what happens
     try:
         while True:
             run = connection.recv()
@@ -20,9 +20,9 @@ def work(job, connection):
 
 
 class Worker:
-    """A process and the run that it has."""
+    """A process and its current run."""
 
-    # A fork would have the other processes' ends of pipes: they would not notice the death of this one.
+    # Not "fork": a forked process would inherit the others' pipes, so that these would not notice when the parent dies.
     _context = multiprocessing.get_context("spawn")
 
     def __init__(self, job):
@@ -37,17 +37,17 @@ class Worker:
         try:
             self.connection.send(run)
         except (BrokenPipeError, ConnectionResetError):
-            pass  # it is dead: outcome() says so
+            pass  # the process is dead, which outcome() reports
 
     def outcome(self):
-        """Of its run; raises EOFError if the process has died."""
+        """The outcome of the current run; raises EOFError if the process has died."""
         try:
             return self.connection.recv()
-        except OSError:  # in the middle of it
+        except OSError:  # the process died while it sent the outcome
             raise EOFError from None
 
     def death(self):
-        """What ended a process that is dead."""
+        """What ended the process, which must be dead."""
         self._process.join()
         code = self._process.exitcode
         return "signal %d" % -code if code < 0 else "exit status %d" % code
@@ -59,14 +59,14 @@ class Worker:
 
 
 def perform_all(job, runs, workers, retries):
-    """Yields pairs of the number of a run and its Outcome, as they come.
+    """Yields pairs (number of the run, Outcome) in the order in which runs end.
 
-    runs: arguments of perform(), the number being the first. workers: how many processes.
-    retries: how often a run is repeated whose process has died, before that is its outcome.
+    runs: arguments of perform(), of which the number is the first. workers: number of processes.
+    retries: how often a run is repeated if its process dies; after that the run has failed.
     """
     waiting = collections.deque(runs)
     deaths = collections.Counter()
-    busy = {}  # workers by their connections
+    busy = {}  # workers by connection
     try:
         for _ in range(min(workers, len(waiting))):
             start(Worker(job), waiting, busy)
@@ -95,7 +95,7 @@ def perform_all(job, runs, workers, retries):
 
 
 def start(worker, waiting, busy):
-    """The next run, or the end of the process."""
+    """Starts the next run on the worker, or ends the worker if no run is left."""
     if waiting:
         worker.begin(waiting.popleft())
         busy[worker.connection] = worker

@@ -1,4 +1,4 @@
-"""A bar on the terminal, with the time that is left."""
+"""A progress bar on the terminal, with an estimate of the remaining time."""
 
 import sys
 import time
@@ -8,7 +8,7 @@ INTERVAL = 0.2  # between drawings [s]
 
 
 def duration_text(seconds):
-    """In the two largest units: '2 h 05 min', '1 min 40 s', '12 s'."""
+    """A duration in its two largest units: '2 h 05 min', '1 min 40 s', '12 s'."""
     minutes, seconds = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:
@@ -17,7 +17,7 @@ def duration_text(seconds):
 
 
 class ProgressBar:
-    """Of `whole` runs, of which `done` are there already. Draws nothing where nobody looks."""
+    """Shows how many of `whole` runs are done; `done` at the start. Draws nothing if standard error is no terminal."""
 
     def __init__(self, done, whole, is_wanted):
         self._first, self._whole = done, whole

@@ -1,4 +1,4 @@
-"""The file of results: a row for each run, appended when it is there, and in their order at the end."""
+"""The file of results: a row is appended for each run when it ends; at the end all rows are sorted."""
 
 import csv
 import fcntl
@@ -17,19 +17,19 @@ def line_of(fields):
 
 
 def is_failure(line):
-    """The last column says why; it is empty where nothing failed."""
+    """Whether a row's last column, the reason of a failure, is not empty."""
     return not line.endswith(b",\n")
 
 
 class Results:
-    """Opens or begins the file of a plan's results; `rows`: the lines that are there, by the number of the run.
+    """Opens or creates the file of a plan's results. `rows`: existing lines, by the number of the run.
 
-    What a killed program has left of a last line is cut off. Raises InputError where the file is of another plan or
-    scene, is no such file, or is being written by somebody else.
+    If a killed program has left an incomplete last line, that line is removed. Raises InputError if the file belongs to
+    another plan or scene, has another format, or is being written by another process.
     """
 
     def __init__(self, path, plan, repeat_failed=False):
-        self.path = os.path.realpath(path)  # of a link: where it leads
+        self.path = os.path.realpath(path)  # follows symbolic links
         self._plan = plan
         self._header = b"%s, scene %s, plan %s\n" % (
             FORMAT.encode(), plan.scene_hash.encode(), plan.plan_hash.encode()) + line_of(plan.columns)
@@ -39,7 +39,7 @@ class Results:
             raise InputError("cannot write '%s': %s" % (path, error.strerror)) from None
         self._lock(self.path)
         content = self._file.readall()
-        if self._header.startswith(content):  # nothing, or what is left of a header
+        if self._header.startswith(content):  # empty, or an incomplete header
             content = self._header
         elif not content.startswith(self._header):
             raise self._stranger(content)
@@ -58,12 +58,12 @@ class Results:
         except OSError:
             pass  # a file system without locks
         if is_open_at and not os.path.samestat(os.fstat(self._file.fileno()), os.stat(is_open_at)):
-            raise InputError("'%s' is being written by another sweep" % self.path)  # which has just replaced it
+            raise InputError("'%s' is being written by another sweep" % self.path)  # was just replaced
 
     def _stranger(self, content):
         first = content.split(b"\n", 1)[0].decode(errors="replace")
         if not first.startswith(FORMAT):
-            return InputError("'%s' is no file of results of a sweep; it is left as it is" % self.path)
+            return InputError("'%s' is not a file of results of a sweep; it was not changed" % self.path)
         what = "scene" if "scene %s," % self._plan.scene_hash not in first else "plan"
         return InputError("'%s' has results of another %s (%s; now: scene %s, plan %s); name another file by --output, "
                           "or remove it" % (self.path, what, first[len(FORMAT) + 2:], self._plan.scene_hash,
@@ -72,7 +72,10 @@ class Results:
     def _rows_of(self, text):
         rows = {}
         for count, line in enumerate(text.splitlines(keepends=True), 3):
-            fields = next(csv.reader([line.decode(errors="replace")]), [])
+            try:
+                fields = next(csv.reader([line.decode(errors="replace")]), [])
+            except csv.Error:
+                fields = []
             number = int(fields[0]) if fields and fields[0].isdecimal() else 0
             if len(fields) != len(self._plan.columns) or not 1 <= number <= len(self._plan.design.rows):
                 raise InputError("%s:%d: expected the %d columns of a run, got '%s'"
@@ -98,7 +101,7 @@ class Results:
             data = data[self._file.write(data):]
 
     def _replace(self, content):
-        """Puts another file in its place, whole; it is locked before anybody can find it."""
+        """Replaces the file by one with this content, as a whole. The new file is locked before it gets its name."""
         unfinished = self.path + ".unfinished"
         old, self._file = self._file, open(unfinished, "w+b", buffering=0)
         self._lock()
@@ -108,7 +111,7 @@ class Results:
         old.close()
 
     def finish(self):
-        """Rows in the order of runs, when all of them are there."""
+        """Sorts the rows by run; to be called when all rows are there."""
         if list(self.rows) != sorted(self.rows):
             self.rows = dict(sorted(self.rows.items()))
             self._replace(self._header + b"".join(self.rows.values()))

@@ -1,4 +1,4 @@
-"""One run of a job."""
+"""Makes one run of a job."""
 
 import math
 import os
@@ -14,24 +14,24 @@ from .history import write_history
 
 
 class Outcome(typing.NamedTuple):
-    measures: tuple  # numbers, in the order of the job's; NaN where it failed
-    failure: str  # why; empty: it did not
+    measures: tuple  # numbers, in the order of job.measures; NaN if the run failed
+    failure: str  # reason of the failure; empty: the run succeeded
 
 
 def perform(job, number, parameters, history_path):
-    """Simulates the scene with the values of `parameters`, a dictionary, and measures.
+    """Simulates the scene with the values of the dictionary `parameters`, and evaluates the measures.
 
-    number: of the run. history_path: of its history, where the job has one; written whole or not at all.
-    What goes wrong is in the Outcome.
+    number: of the run. history_path: file of its history, if the job has one; written completely or not at all.
+    Errors are reported in the Outcome.
     """
-    warnings.simplefilter("ignore", flexarm.SceneWarning)  # the scene's own are shown when the plan is read
+    warnings.simplefilter("ignore", flexarm.SceneWarning)  # were shown when the plan was read
     try:
         return simulate(job, number, parameters, history_path)
     except (flexarm.SceneError, flexarm.StepError) as error:
         reason = str(error)
-    except Exception as error:  # whatever it is, the other runs go on
+    except Exception as error:  # after any error the other runs go on
         reason = "%s: %s" % (type(error).__name__, error)
-    # Where the scene lies is not a part of the result.
+    # The scene's folder must not be a part of the result.
     return failed(job, reason.replace(os.path.dirname(job.scene) + os.sep, ""))
 
 
@@ -40,11 +40,11 @@ def failed(job, reason):
 
 
 def columns_of(job):
-    """Patterns of the columns that are recorded: of names that may have brackets themselves."""
+    """Patterns for the columns that are recorded. Brackets are escaped, since names may contain them."""
     names = {name: None for measure in job.measures for name in measure.expression.used}
     if job.history:
         names.update(dict.fromkeys(job.history.columns))
-    names.pop("time", None)  # is always there, and the first
+    names.pop("time", None)  # always recorded, as the first column
     return [name.replace("[", "[[]") for name in names] or ["time"]
 
 
@@ -68,7 +68,7 @@ def simulate(job, number, parameters, history_path):
 
 
 def recorded(job, simulation, record):
-    """Rows at the start, after every `job.every` steps, and at the end. Raises StepError, with those until then."""
+    """Rows at the start, after every `job.every` steps, and at the end. Raises StepError with the rows until then."""
     steps = math.ceil(job.until / simulation.step_size - 1e-6)
     rest = steps % job.every
     joints, efforts = effort_rows(job.pulses, steps, simulation.step_size)

@@ -1,5 +1,5 @@
 #pragma once
-/// Stand-in for the header of ros_control of that name: one controller, which commands `~test_effort` to all joints.
+/// Stand-in for the ros_control header of this name: a single controller, which commands `~test_effort` to all joints.
 
 #include <hardware_interface/joint_command_interface.h>
 #include <hardware_interface/robot_hw.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// Stand-in for the header of ros_control of that name.
+/// Stand-in for the ros_control header of this name.
 
 #include <string>
 

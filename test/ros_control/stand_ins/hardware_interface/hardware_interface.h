@@ -1,5 +1,5 @@
 #pragma once
-/// Stand-in for the header of ros_control of that name: what src/ros_control uses of it, for tests.
+/// Stand-in for the ros_control header of this name: the parts that src/ros_control uses, for tests.
 
 #include <exception>
 #include <set>

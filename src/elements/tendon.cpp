@@ -1,0 +1,279 @@
+#include "elements/tendon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "elements/tendon_inside.h"
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+/// The nodes of a plan, each once.
+std::vector<int> nodes_of(const TendonPlan& plan) {
+  std::vector<int> nodes;
+  const auto add = [&](int node) {
+    if (node >= 0 && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+  };
+  for (const TendonGuide& guide : plan.guides) add(guide.place.node);
+  for (const TendonWinch& winch : plan.winches) add(winch.node);
+  return nodes;
+}
+
+/// In pictures a turn on a pulley consists of so many straight parts.
+constexpr int kMostArcs = 36;
+
+/// Length of rim per angle at which the line comes, and minus that at which it goes, counted as length of the line.
+double rim(const GuidePlace& guide) {
+  return guide.sense * guide.radius;
+}
+
+}  // namespace
+
+Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, const std::vector<NodePose>& poses)
+    : ForceElement(std::move(name), nodes_of(plan), std::move(functions)), plan_(std::move(plan)) {
+  const int last = static_cast<int>(plan_.guides.size()) - 1;
+  for (int i = 1; i < last; ++i) {
+    parts_ += plan_.guides[i].divides() ? 1 : 0;
+    may_lift_ = may_lift_ || (plan_.guides[i].place.is_circle() && !plan_.guides[i].divides());
+  }
+  shares_.assign(parts_, 1.0);
+  std::vector<double> numbers(memory_size(), 0.0);
+  const NewMemory memory{numbers.data(), parts_};
+  begin(Poses(poses), 0, memory);
+  for (int part = 0; part < parts_; ++part) shares_[part] = lengths(Poses(poses), memory, part).length;
+  length_at_start_ = std::accumulate(shares_.begin(), shares_.end(), 0.0);
+  for (double& share : shares_) share /= length_at_start_;
+  if (plan_.rest_length == 0) plan_.rest_length = length_at_start_;
+}
+
+std::string Tendon::description() const {
+  std::string text = plan_.has_tension
+                         ? "given tension"
+                         : fmt::format("EA {:.6g} N, {:.6g} N s/m", plan_.law.stiffness, plan_.law.damping);
+  return parts_ == 1 ? text : fmt::format("{}, {} parts", text, parts_);
+}
+
+Tendon::Scratch& Tendon::scratch() const {
+  return Scratch::of(parts_, 6 * reach().size());
+}
+
+int Tendon::local(int node) const {
+  if (node < 0) return -1;
+  return static_cast<int>(std::find(reach().begin(), reach().end(), node) - reach().begin());
+}
+
+Tendon::Neighbours Tendon::neighbours(const Memory& memory, int guide) const {
+  Neighbours out{guide - 1, guide + 1};
+  while (memory.touched(out.before) == 0) --out.before;
+  while (memory.touched(out.behind) == 0) ++out.behind;
+  return out;
+}
+
+Tendon::Span Tendon::span(int first, int second, int part) const {
+  const TendonGuide &from = plan_.guides[first], &to = plan_.guides[second];
+  Span out{{from.place, to.place}, first,     second, part, local(from.place.node),
+           local(to.place.node),   {1, 0, 0}, {},     false};
+  (from.divides() ? out.rest.begin : out.length.begin) = from.divides() ? -rim(from.place) : rim(from.place);
+  (to.divides() ? out.rest.end : out.length.end) = to.divides() ? rim(to.place) : -rim(to.place);
+  out.winds = (from.divides() && from.place.is_circle()) || (to.divides() && to.place.is_circle());
+  return out;
+}
+
+double Tendon::paid_out(const Poses& poses) const {
+  double out = 0;
+  for (const TendonWinch& winch : plan_.winches)
+    out += (winch.node < 0 ? winch.still : winch.direction.dot(poses[winch.node].position)) - winch.zero;
+  return out;
+}
+
+TendonLengths Tendon::lengths(const Poses& poses, const Memory& memory, int part) const {
+  TendonLengths out;
+  out.rest = shares_[part] * memory.function() - memory.rims_at_start(part) + (part == 0 ? paid_out(poses) : 0);
+  for_each_span(memory, [&](const Span& span) {
+    if (span.part != part) return;
+    const PieceState state = span.piece.follow(poses.of(span.piece), memory.angles(span.first, span.second));
+    out.length += state.value(span.length);
+    out.rest += state.value(span.rest);
+  });
+  return out;
+}
+
+double Tendon::energy(const Poses& poses, const Memory& memory) const {
+  double out = 0;
+  for (int part = 0; part < parts_ && !plan_.has_tension; ++part) out += plan_.law.energy(lengths(poses, memory, part));
+  return out;
+}
+
+double Tendon::energy(const State& state, const double* memory) const {
+  return energy(Poses(state), Memory{memory, parts_});
+}
+
+void Tendon::find_angles(const Poses& poses, const NewMemory& memory, bool is_near) const {
+  for_each_span(memory, [&](const Span& span) {
+    const PiecePoses here = poses.of(span.piece);
+    const PieceState near = memory.angles(span.first, span.second);
+    const PieceState state = is_near ? span.piece.follow(here, near) : span.piece.find(here, near);
+    memory.goes(span.first) = state.begin;
+    memory.comes(span.second) = state.end;
+  });
+}
+
+void Tendon::start(const State& state, const double* functions, double* numbers) const {
+  begin(Poses(state), this->functions().empty() ? plan_.rest_length : functions[0], {numbers, parts_});
+}
+
+/// Sets the memory to that of a line that has not moved yet.
+void Tendon::begin(const Poses& poses, double function, const NewMemory& memory) const {
+  memory.function() = function;
+  const int count = static_cast<int>(plan_.guides.size());
+  for (int i = 0; i < count; ++i) memory.touched(i) = 1;
+  find_angles(poses, memory, false);
+  for (int i = 0; i < count; ++i) {
+    const GuidePlace& place = plan_.guides[i].place;
+    const double wrap = plan_.guides[i].wrap;
+    if (place.is_circle()) memory.goes(i) = nearest_turn(memory.goes(i), memory.comes(i) + place.sense * wrap);
+  }
+  find_touched(poses, memory);
+  for (int part = 0; part < parts_; ++part) memory.rims_at_start(part) = 0;
+  for_each_span(memory, [&](const Span& span) {
+    memory.rims_at_start(span.part) += memory.angles(span.first, span.second).value(span.rest);
+  });
+}
+
+void Tendon::find_touched(const Poses& poses, const NewMemory& memory) const {
+  const int last = static_cast<int>(plan_.guides.size()) - 1;
+  for (int i = 1; i < last; ++i) {
+    const GuidePlace& place = plan_.guides[i].place;
+    if (!place.is_circle() || plan_.guides[i].divides()) continue;
+    const auto [before, behind] = neighbours(memory, i);
+    if (memory.touched(i) != 0) {
+      if (place.sense * (memory.goes(i) - memory.comes(i)) >= 0) continue;
+      memory.touched(i) = 0;
+    } else {
+      // Angles are followed over turns, so that a line that swings round beside the pulley does not come to its rim.
+      const Span comes = span(before, i, 0), goes = span(i, behind, 0);
+      const double from = comes.piece.find(poses.of(comes.piece), memory.angles(before, i)).end;
+      const double to = goes.piece.find(poses.of(goes.piece), memory.angles(i, behind)).begin;
+      if (!std::isfinite(from + to)) continue;  // a neighbour is within the circle
+      memory.comes(i) = from;
+      memory.goes(i) = to;
+      if (!(place.sense * (to - from) > 0)) continue;
+      memory.touched(i) = 1;
+    }
+    find_angles(poses, memory, false);  // those of the neighbours have changed
+  }
+}
+
+// ---------------------------------------------------------------- small motions and output
+
+void Tendon::find_gradients(const Poses& poses, const Memory& memory, int part, PartForces& out) const {
+  out.reset(6 * static_cast<Eigen::Index>(reach().size()));
+  const auto add = [](Eigen::VectorXd& sum, const Span& span, const Vector12& gradient) {
+    if (span.first_node >= 0) sum.segment<6>(6 * span.first_node) += gradient.head<6>();
+    if (span.second_node >= 0) sum.segment<6>(6 * span.second_node) += gradient.tail<6>();
+  };
+  for_each_span(memory, [&](const Span& span) {
+    if (span.part != part || span.first_node == span.second_node) return;
+    const PiecePoses at = poses.of(span.piece);
+    const PieceState here = span.piece.follow(at, memory.angles(span.first, span.second));
+    add(out.length, span, span.piece.gradient(at, here, span.length));
+    if (span.winds) add(out.rest, span, span.piece.gradient(at, here, span.rest));
+  });
+  for (const TendonWinch& winch : plan_.winches)
+    if (part == 0 && winch.node >= 0) out.rest.segment<3>(6 * local(winch.node)) += winch.direction;
+}
+
+double Tendon::stretch_rate(const Poses& poses, const Memory& memory, int part,
+                            const std::vector<Vector6>& velocities) const {
+  PartForces& gradient = scratch().gradient;
+  find_gradients(poses, memory, part, gradient);
+  double rate = 0;
+  for (std::size_t i = 0; i < reach().size(); ++i)
+    rate += (gradient.length - gradient.rest).segment<6>(6 * static_cast<Eigen::Index>(i)).dot(velocities[reach()[i]]);
+  return rate;
+}
+
+ForceMeasures Tendon::measures(const State& state, const double* memory, const int*) const {
+  const Memory view{memory, parts_};
+  const Poses poses(state);
+  ForceMeasures out{Eigen::MatrixXd(parts_, 6 * reach().size()), Eigen::MatrixXd::Zero(parts_, parts_)};
+  for (int part = 0; part < parts_; ++part) {
+    PartForces gradient;
+    find_gradients(poses, view, part, gradient);
+    const TendonLengths line = lengths(poses, view, part);
+    const bool stretches = !plan_.has_tension && plan_.law.is_taut(line);
+    // The energy is of first degree in both lengths, so its second derivative has rank one.
+    out.rows.row(part) = gradient.length - (stretches ? line.length / line.rest : 1.0) * gradient.rest;
+    if (stretches) out.stiffness(part, part) = plan_.law.stiffness / line.rest;
+  }
+  return out;
+}
+
+DamperTensions Tendon::dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const {
+  const Memory view{memory, parts_};
+  DamperTensions out{Eigen::VectorXd::Zero(parts_), Eigen::MatrixXd::Zero(parts_, parts_)};
+  for (int part = 0; part < parts_ && !plan_.has_tension; ++part) {
+    const TendonLengths line = lengths(Poses(state), view, part);
+    if (!plan_.law.is_taut(line) || plan_.law.tension(line) + plan_.law.damping * rates[part] < 0) continue;
+    out.tension[part] = plan_.law.damping * rates[part];
+    out.slope(part, part) = plan_.law.damping;
+  }
+  return out;
+}
+
+std::vector<ForceOutput> Tendon::outputs() const {
+  if (parts_ == 1) return {{"length", "m"}, {"tension", "N"}};
+  return {{"length", "m"}, {"tension", "N"}, {"last_tension", "N"}};
+}
+
+void Tendon::put_out(const ForceMotion& motion, std::vector<double>& values) const {
+  const Memory memory{motion.memory, parts_};
+  const Poses poses(motion.state);
+  double length = 0, first = 0, last = 0;
+  for (int part = 0; part < parts_; ++part) {
+    const TendonLengths line = lengths(poses, memory, part);
+    length += line.length;
+    last = std::max(memory.function(), 0.0);
+    if (!plan_.has_tension) {
+      const double by_function = functions().empty() ? 0 : shares_[part] * motion.function_rates[0];
+      const double rate = stretch_rate(poses, memory, part, motion.velocities) - by_function - memory.slip_rate(part);
+      last = plan_.law.is_taut(line) ? std::max(plan_.law.tension(line) + plan_.law.damping * rate, 0.0) : 0;
+    }
+    if (part == 0) first = last;
+  }
+  values.push_back(length);
+  values.push_back(first);
+  if (parts_ > 1) values.push_back(last);
+}
+
+std::size_t Tendon::most_line_points() const {
+  std::size_t points = 0;
+  for (const TendonGuide& guide : plan_.guides) points += guide.place.is_circle() ? 2 * kMostArcs + 1 : 1;
+  return points;
+}
+
+void Tendon::put_line(const ForceMotion& motion, std::vector<Vector3>& points) const {
+  const Memory memory{motion.memory, parts_};
+  const Poses poses(motion.state);
+  const int last = static_cast<int>(plan_.guides.size()) - 1;
+  for (int i = 0; i <= last; ++i) {
+    if (memory.touched(i) == 0) continue;
+    const GuidePlace& place = plan_.guides[i].place;
+    // What is wound up at the ends of the line is not drawn.
+    const double from = i == 0 ? memory.goes(i) : memory.comes(i), to = i == last ? memory.comes(i) : memory.goes(i);
+    // Several turns look like one and a part.
+    const double way =
+        std::abs(to - from) < 2 * kPi ? to - from : std::fmod(to - from, 2 * kPi) + std::copysign(2 * kPi, to - from);
+    const int steps = place.is_circle() ? static_cast<int>(std::ceil(std::abs(way) / (2 * kPi) * kMostArcs)) : 0;
+    for (int k = 0; k <= steps; ++k) {
+      const double angle = steps == 0 ? from : from + way * k / steps;
+      points.push_back(poses.point(place, angle));
+    }
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,145 @@
+// The change of a piece of a line over a step.
+#include "elements/tendon_geometry.h"
+#include "elements/tendon_piece.h"
+
+namespace flexarm {
+namespace tendon {
+namespace {
+
+/// If a step changes a piece's scalar products by less than this part of their size, the mean gradient gives the change
+/// of a functional to round-off: its error is of third order.
+constexpr double kTiny = 1e-5;
+
+/// Adds to `direction` what makes its product with the motion equal to the change of the functional (Gonzalez 1996). It
+/// acts along the gradients of those scalar products of the vectors of both guides of which the functional consists.
+template <class S>
+class Correction {
+ public:
+  using V = Eigen::Matrix<S, 3, 1>;
+  Correction(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& begin_a, const GuideFrame<S>& end_a,
+             const GuideFrame<double>& begin_b, const GuideFrame<S>& end_b)
+      : mean_a_(mixed(begin_a, end_a, 0.5)), mean_b_(mixed(begin_b, end_b, 0.5)), sum_(Eigen::Matrix<S, 12, 1>()) {
+    for (int i = 0; i < 12; ++i) sum_[i] = S(0);
+    const Vector3 begin_way = begin_b.centre - begin_a.centre;
+    const V end_way = end_b.centre - end_a.centre, way = mean_b_.centre - mean_a_.centre;
+    const std::array<const Vector3*, 3> begin_axes[2] = {{&begin_a.first, &begin_a.second, &begin_a.normal},
+                                                         {&begin_b.first, &begin_b.second, &begin_b.normal}};
+    const std::array<const V*, 3> end_axes[2] = {{&end_a.first, &end_a.second, &end_a.normal},
+                                                 {&end_b.first, &end_b.second, &end_b.normal}};
+    const std::array<const V*, 3> axes[2] = {{&mean_a_.first, &mean_a_.second, &mean_a_.normal},
+                                             {&mean_b_.first, &mean_b_.second, &mean_b_.normal}};
+    for (int body = 0; body < 2; ++body) {
+      if (!(body == 0 ? a : b).is_circle()) continue;
+      for (int i = 0; i < 3; ++i) {
+        const S change = dot(end_way, *end_axes[body][i]) - begin_way.dot(*begin_axes[body][i]);
+        add_way(change, *axes[body][i]);
+        add_axis(change, body, *axes[body][i], way);
+      }
+    }
+    size_ = begin_way.squaredNorm();
+    if (!a.is_circle() || !b.is_circle()) return;
+    const double scale = a.radius * b.radius;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const S change = scale * (dot(*end_axes[0][i], *end_axes[1][j]) - begin_axes[0][i]->dot(*begin_axes[1][j]));
+        squares_ += change * change;
+        add_axis(scale * change, 0, *axes[0][i], *axes[1][j]);
+        add_axis(scale * change, 1, *axes[1][j], *axes[0][i]);
+      }
+  }
+  bool is_tiny() const { return !(value_of(squares_) > kTiny * kTiny * size_); }
+  Eigen::Matrix<S, 12, 1> of(const S& missing) const {
+    Eigen::Matrix<S, 12, 1> out;
+    for (int i = 0; i < 12; ++i) out[i] = missing / squares_ * sum_[i];
+    return out;
+  }
+
+ private:
+  void add_way(const S& change, const V& axis) {
+    squares_ += change * change;
+    const V force = change * axis, moment_a = cross(mean_a_.arm, force), moment_b = cross(mean_b_.arm, force);
+    for (int i = 0; i < 3; ++i) {
+      sum_[i] -= force[i];
+      sum_[3 + i] -= moment_a[i];
+      sum_[6 + i] += force[i];
+      sum_[9 + i] += moment_b[i];
+    }
+  }
+  void add_axis(const S& factor, int body, const V& axis, const V& other) {
+    const V moment = cross(axis, other);
+    for (int i = 0; i < 3; ++i) sum_[6 * body + 3 + i] += factor * moment[i];
+  }
+
+  GuideFrame<S> mean_a_, mean_b_;
+  Eigen::Matrix<S, 12, 1> sum_;
+  S squares_{0};
+  double size_ = 0;
+};
+
+template <class S>
+struct Change {
+  Eigen::Matrix<S, 12, 1> direction;
+  S end;
+};
+
+template <class S>
+Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& begin_a,
+                    const GuideFrame<S>& end_a, const GuideFrame<double>& begin_b, const GuideFrame<S>& end_b,
+                    const PieceState& before, const PieceState& after, const PieceWeights& weights, bool at_end) {
+  Change<S> out;
+  const Angles begin{before.begin, before.end}, end{after.begin, after.end};
+  out.end = functional(a, b, end_a, end_b, weights, end);
+  const double weight = at_end ? 1 : 0.5;
+  const GuideFrame<S> mean_a = mixed(begin_a, end_a, weight), mean_b = mixed(begin_b, end_b, weight);
+  if (!a.is_circle() && !b.is_circle() && !at_end) {
+    // The mean vector over the mean length gives the change of a length exactly.
+    const S length = length_of(typename GuideFrame<S>::V(end_b.centre - end_a.centre));
+    const S mean = 0.5 * (before.length + length);
+    VectorGradient<S> gradient;
+    gradient.by_way = (weights.straight / mean) * (mean_b.centre - mean_a.centre);
+    for (auto* axes : {gradient.by_first, gradient.by_second})
+      for (int i = 0; i < 2; ++i) axes[i] = typename GuideFrame<S>::V(S(0), S(0), S(0));
+    out.direction = gradient.on_nodes(mean_a, mean_b);
+    return out;
+  }
+  const Angles middle{(1 - weight) * begin.begin + weight * end.begin, (1 - weight) * begin.end + weight * end.end};
+  const Angles mean = tangents_near(a, b, mean_a.values(), mean_b.values(), middle);
+  const VectorGradient<S> gradient = vector_gradient(a, b, mean_a, mean_b, weights, mean);
+  out.direction = gradient.on_nodes(mean_a, mean_b);
+  if (at_end) return out;
+  const Correction<S> correction(a, b, begin_a, end_a, begin_b, end_b);
+  if (correction.is_tiny()) return out;
+  const S missing = out.end - before.value(weights) - gradient.change(begin_a, end_a, begin_b, end_b);
+  out.direction += correction.of(missing);
+  return out;
+}
+
+}  // namespace
+}  // namespace tendon
+
+PieceChange TendonPiece::change(const PieceEnd& begin, const PieceEnd& end, const PieceWeights& weights, bool at_end,
+                                bool with_slope) const {
+  const tendon::GuideFrame<double> begin_a = tendon::frame_of(first_, begin.poses.first),
+                                   begin_b = tendon::frame_of(second_, begin.poses.second);
+  const tendon::GuideFrame<double> end_a = tendon::frame_of(first_, end.poses.first),
+                                   end_b = tendon::frame_of(second_, end.poses.second);
+  PieceChange out;
+  if (!with_slope) {
+    out.direction = tendon::change_of<double>(first_, second_, begin_a, end_a, begin_b, end_b, begin.state, end.state,
+                                              weights, at_end)
+                        .direction;
+    return out;
+  }
+  const tendon::GuideFrame<tendon::Dual> moving_a = tendon::moving(end_a, first_, 0),
+                                         moving_b = tendon::moving(end_b, second_, 6);
+  const tendon::Change<tendon::Dual> change = tendon::change_of<tendon::Dual>(
+      first_, second_, begin_a, moving_a, begin_b, moving_b, begin.state, end.state, weights, at_end);
+  for (int i = 0; i < 12; ++i) {
+    out.direction[i] = change.direction[i].value();
+    out.direction_slope.row(i) = change.direction[i].derivatives().transpose();
+  }
+  out.end_gradient = change.end.derivatives();
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,174 @@
+// The forces of a tendon in a step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elements/tendon_inside.h"
+#include "joints/coordinate_step.h"
+
+namespace flexarm {
+
+FunctionStep Tendon::function_of(const ForceStep& step) const {
+  if (functions().empty()) return {plan_.rest_length, plan_.rest_length, plan_.rest_length};
+  return step.functions[0];
+}
+
+/// The lengths of a part over the step, without slip.
+TendonPartStep Tendon::part_step(const ForceStep& step, const Memory& begin, const Memory& end, int part) const {
+  TendonPartStep out{lengths(Poses(step.begin), begin, part), lengths(Poses(step.end), end, part), step.duration,
+                     step.at_end};
+  if (!step.at_end || step.duration == 0 || plan_.law.damping == 0) return out;
+  const double by_function = shares_[part] * (end.function() - begin.function());
+  CoordinateStep change;
+  change.begin_rate = stretch_rate(Poses(step.begin), begin, part, step.velocities) - begin.slip_rate(part);
+  change.gamma = step.gamma;
+  change.step = step.duration;
+  // Without the function, whose rate is that of the step.
+  change.increment = out.end.length - out.end.rest - out.begin.length + out.begin.rest + by_function;
+  out.rate = rate_of(change) - by_function / step.duration;
+  out.rate_slope = rate_slope(change);
+  return out;
+}
+
+/// The angle by which the line turns at a guide [rad].
+double Tendon::contact_angle(const Poses& poses, const Memory& memory, int guide) const {
+  const GuidePlace& place = plan_.guides[guide].place;
+  if (place.is_circle()) return std::max(place.sense * (memory.goes(guide) - memory.comes(guide)), 0.0);
+  const auto [before, behind] = neighbours(memory, guide);
+  const Vector3 here = poses.point(place, 0);
+  const Vector3 comes = here - poses.point(plan_.guides[before].place, memory.goes(before));
+  const Vector3 goes = poses.point(plan_.guides[behind].place, memory.comes(behind)) - here;
+  return std::atan2(comes.cross(goes).norm(), comes.dot(goes));
+}
+
+/// Finds what the parts do. Returns false if no slip is found with which they are in balance.
+bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const {
+  auto& [slip, parts, ratios, directions, slopes, gradient] = scratch;
+  parts.clear(), ratios.clear();
+  for (int part = 0; part < parts_; ++part) {
+    parts.push_back(part_step(step, begin, end, part));
+    if (!(parts.back().end.rest > 0)) return false;  // nothing is left of the line
+  }
+  for (int i = 1; i + 1 < static_cast<int>(plan_.guides.size()); ++i) {
+    const TendonGuide& guide = plan_.guides[i];
+    if (!guide.divides()) continue;
+    // The mean of both ends; its derivative is left out of the tangent.
+    const double angle =
+        guide.grips ? 0 : 0.5 * (contact_angle(Poses(step.begin), begin, i) + contact_angle(Poses(step.end), end, i));
+    ratios.push_back(guide.grips ? TendonSlip::kNever : std::exp(guide.friction * angle));
+  }
+  return slip.solve(plan_.law, parts, ratios);
+}
+
+/// Sums up the directions of all parts, and the derivatives of their lengths at the end. Adds the derivatives of the
+/// directions to the tangent.
+void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Memory& end, const TendonSlip& slip,
+                            std::vector<PartForces>& directions, std::vector<PartForces>& slopes,
+                            ForceAction& action) const {
+  const Poses from(step.begin), to(step.end);
+  const bool with_slope = action.tangent.size() != 0;
+  for_each_span(begin, [&](const Span& span) {
+    if (span.first_node == span.second_node) return;  // on one body: nothing changes
+    const auto at = [&](const Poses& poses, const Memory& memory) {
+      const PiecePoses here = poses.of(span.piece);
+      return PieceEnd{here, span.piece.follow(here, memory.angles(span.first, span.second))};
+    };
+    const PieceEnd old = at(from, begin), now = at(to, end);
+    const auto add = [&](const PieceWeights& weights, double force, Eigen::VectorXd& direction,
+                         Eigen::VectorXd& slope) {
+      const PieceChange change = span.piece.change(old, now, weights, step.at_end, with_slope);
+      const int nodes[2] = {span.first_node, span.second_node};
+      for (int i = 0; i < 2; ++i) {
+        if (nodes[i] < 0) continue;
+        direction.segment<6>(6 * nodes[i]) += change.direction.segment<6>(6 * i);
+        if (!with_slope) continue;
+        slope.segment<6>(6 * nodes[i]) += change.end_gradient.segment<6>(6 * i);
+        for (int j = 0; j < 2; ++j)
+          if (nodes[j] >= 0)
+            action.tangent.block<6, 6>(6 * nodes[i], 6 * nodes[j]) +=
+                force * change.direction_slope.block<6, 6>(6 * i, 6 * j);
+      }
+    };
+    const TendonStep& line = slip.steps()[span.part];
+    add(span.length, line.tension, directions[span.part].length, slopes[span.part].length);
+    if (span.winds && !plan_.has_tension)
+      add(span.rest, line.release, directions[span.part].rest, slopes[span.part].rest);
+  });
+  for (const TendonWinch& winch : plan_.winches)
+    if (winch.node >= 0)
+      for (Eigen::VectorXd* sum : {&directions[0].rest, &slopes[0].rest})
+        sum->segment<3>(6 * local(winch.node)) += winch.direction;
+}
+
+void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) const {
+  action.residual.setZero();
+  action.tangent.setZero();
+  action.dissipated = action.work = 0;
+  const Memory begin{step.memory, parts_};
+  const NewMemory end{step.new_memory, parts_};
+  std::copy_n(step.memory, memory_size(), step.new_memory);
+  const FunctionStep function = function_of(step);
+  end.function() = function.end;
+  find_angles(Poses(step.end), end, true);
+
+  Scratch& scratch = this->scratch();
+  auto& [slip, part_steps, ratios, directions, slopes, gradient] = scratch;
+  directions.resize(parts_), slopes.resize(parts_);
+  for (std::vector<PartForces>* sums : {&directions, &slopes})
+    for (PartForces& sum : *sums) sum.reset(action.residual.size());
+  if (plan_.has_tension) {
+    slip.set_tension(parts_, step.load_factor * std::max(step.at_end ? function.end : function.mean, 0.0));
+  } else if (!find_steps(step, begin, end, scratch)) {
+    action.residual.setConstant(std::numeric_limits<double>::quiet_NaN());  // the step fails
+    return;
+  }
+  add_directions(step, begin, end, slip, directions, slopes, action);
+  add_forces(slip, directions, slopes, action);
+  for (int part = 0; part < parts_; ++part) {
+    const TendonStep& line = slip.steps()[part];
+    if (plan_.has_tension) {
+      action.work -=
+          line.tension * (lengths(Poses(step.end), end, part).length - lengths(Poses(step.begin), begin, part).length);
+      continue;
+    }
+    action.work += line.release * shares_[part] * (end.function() - begin.function());
+    action.dissipated += line.dissipated - line.release * slip.gain(part);
+    end.rims_at_start(part) -= slip.gain(part);
+    end.slip_rate(part) = step.duration != 0 ? slip.gain(part) / step.duration : 0;
+  }
+  if (!may_lift_) return;
+  // Leaving and touching pulleys changes the length by third powers of small angles. The energy is counted.
+  const double before = energy(Poses(step.end), end);
+  find_touched(Poses(step.end), end);
+  action.dissipated += before - energy(Poses(step.end), end);
+}
+
+/// Adds tensions along the directions, and the derivatives of the tensions.
+void Tendon::add_forces(TendonSlip& slip, const std::vector<PartForces>& directions,
+                        const std::vector<PartForces>& slopes, ForceAction& action) const {
+  const bool with_slope = action.tangent.size() != 0;
+  if (with_slope) slip.find_slopes();
+  // The change of what a part gains by slipping, by the lengths of another part.
+  const auto gains = [](const Eigen::MatrixXd& by, int part, int other) {
+    return (part > 0 ? by(part - 1, other) : 0.0) - (part < by.rows() ? by(part, other) : 0.0);
+  };
+  for (int part = 0; part < parts_; ++part) {
+    const TendonStep& line = slip.steps()[part];
+    action.residual += line.tension * directions[part].length + line.release * directions[part].rest;
+    for (int other = 0; with_slope && other < parts_; ++other) {
+      const bool is_own = part == other;
+      const double length = gains(slip.by_length(), part, other), rest = gains(slip.by_rest(), part, other);
+      if (!is_own && length == 0 && rest == 0) continue;
+      const double tension[2] = {(is_own ? line.by_length : 0) + line.by_rest * length,
+                                 (is_own ? line.by_rest : 0) + line.by_rest * rest};
+      const double release[2] = {(is_own ? line.release_by_length : 0) + line.release_by_rest * length,
+                                 (is_own ? line.release_by_rest : 0) + line.release_by_rest * rest};
+      const auto &by_length = slopes[other].length, &by_rest = slopes[other].rest;
+      action.tangent.noalias() += directions[part].length * (tension[0] * by_length + tension[1] * by_rest).transpose();
+      if (directions[part].rest.isZero(0)) continue;
+      action.tangent.noalias() += directions[part].rest * (release[0] * by_length + release[1] * by_rest).transpose();
+    }
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,91 @@
+#pragma once
+/// Views of the data of a tendon (internal to tendon.cpp and tendon_forces.cpp).
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "elements/tendon.h"
+
+namespace flexarm {
+
+class Tendon::Poses {
+ public:
+  explicit Poses(const std::vector<NodePose>& nodes) : nodes_(&nodes) {}
+  explicit Poses(const State& state) : state_(&state) {}
+  NodePose operator[](int node) const {
+    if (node < 0) return {};
+    return nodes_ ? (*nodes_)[node] : node_pose(state_->nodes[node]);
+  }
+  /// The point of a guide at an angle, world axes.
+  Vector3 point(const GuidePlace& guide, double angle) const {
+    const NodePose node = (*this)[guide.node];
+    return node.position + node.rotation * guide.at(angle);
+  }
+  PiecePoses of(const TendonPiece& piece) const { return {(*this)[piece.first().node], (*this)[piece.second().node]}; }
+
+ private:
+  const std::vector<NodePose>* nodes_ = nullptr;
+  const State* state_ = nullptr;
+};
+
+/// `Number`: double, or const double.
+template <class Number>
+struct Tendon::MemoryOf {
+  Number* numbers;
+  int parts;
+
+  operator MemoryOf<const double>() const { return {numbers, parts}; }
+
+  Number& function() const { return numbers[0]; }
+  Number& rims_at_start(int part) const { return numbers[1 + part]; }
+  Number& slip_rate(int part) const { return numbers[1 + parts + part]; }
+  Number& touched(int guide) const { return numbers[1 + 2 * parts + 3 * guide]; }
+  Number& comes(int guide) const { return numbers[2 + 2 * parts + 3 * guide]; }
+  Number& goes(int guide) const { return numbers[3 + 2 * parts + 3 * guide]; }
+  PieceState angles(int first, int second) const { return {0, goes(first), comes(second)}; }
+};
+
+struct Tendon::Span {
+  TendonPiece piece;
+  int first, second;  // guides
+  int part;
+  int first_node, second_node;  // indices into reach(); -1: world
+  PieceWeights length, rest;    // its shares of the part's lengths
+  bool winds;                   // whether `rest` is not zero
+};
+
+/// Derivatives of the lengths of a part by {displacement, spin} of all nodes of reach().
+struct Tendon::PartForces {
+  Eigen::VectorXd length, rest;
+
+  void reset(Eigen::Index size) { length.setZero(size), rest.setZero(size); }
+};
+
+/// Memory for the evaluation of lines with so many parts and numbers. It is kept for each size, so that lines of
+/// different sizes do not allocate in turns.
+struct Tendon::Scratch {
+  TendonSlip slip;
+  std::vector<TendonPartStep> part_steps;
+  std::vector<double> ratios;
+  std::vector<PartForces> directions, slopes;
+  PartForces gradient;
+
+  static Scratch& of(int parts, std::size_t numbers) {
+    thread_local std::map<std::pair<int, std::size_t>, Scratch> all;
+    return all[{parts, numbers}];
+  }
+};
+
+template <class Visit>
+void Tendon::for_each_span(const Memory& memory, const Visit& visit) const {
+  int first = 0, part = 0;
+  for (int i = 1; i < static_cast<int>(plan_.guides.size()); ++i) {
+    if (memory.touched(i) == 0) continue;
+    visit(span(first, i, part));
+    part += plan_.guides[i].divides() ? 1 : 0;
+    first = i;
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,37 @@
+#include "elements/tendon_piece.h"
+
+#include "elements/tendon_geometry.h"
+
+namespace flexarm {
+
+double nearest_turn(double angle, double reference) {
+  return angle + 2 * kPi * std::round((reference - angle) / (2 * kPi));
+}
+
+PieceState TendonPiece::find(const PiecePoses& poses, const PieceState& near) const {
+  const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
+                                   to = tendon::frame_of(second_, poses.second);
+  const tendon::Angles rough = tendon::rough_tangents(first_, second_, from, to);
+  return state_at(poses, rough.begin, rough.end, near);
+}
+
+PieceState TendonPiece::follow(const PiecePoses& poses, const PieceState& near) const {
+  const PieceState out = state_at(poses, near.begin, near.end, near);
+  return std::isfinite(out.length) ? out : find(poses, near);
+}
+
+PieceState TendonPiece::state_at(const PiecePoses& poses, double begin, double end, const PieceState& near) const {
+  const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
+                                   to = tendon::frame_of(second_, poses.second);
+  const tendon::Angles angles = tendon::tangents_near(first_, second_, from, to, {begin, end});
+  const tendon::Chord<double> chord(first_, second_, from, to, angles.begin, angles.end);
+  return {tendon::length_of(chord.way), nearest_turn(angles.begin, near.begin), nearest_turn(angles.end, near.end)};
+}
+
+Vector12 TendonPiece::gradient(const PiecePoses& poses, const PieceState& here, const PieceWeights& weights) const {
+  const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
+                                   to = tendon::frame_of(second_, poses.second);
+  return tendon::vector_gradient<double>(first_, second_, from, to, weights, {here.begin, here.end}).on_nodes(from, to);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,75 @@
+#pragma once
+/// How much of a line slips over guides with friction in a step. (docs/notes/lines.md 4)
+
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "elements/tendon_law.h"
+
+namespace flexarm {
+
+/// The lengths of one part of a line in a step, and the data of the rule for rates.
+struct TendonPartStep {
+  TendonLengths begin, end;
+  double duration = 0;              ///< [s]; 0: an equilibrium
+  bool at_end = false;              ///< forces are those at the end of the step; else means over it
+  double rate = 0, rate_slope = 0;  ///< of length - rest length at the end, if `at_end`
+
+  /// What the part does if its rest length at the end is larger by `slip`.
+  TendonStep with(const TendonLaw& law, double slip) const;
+  /// The same at the end of the step.
+  TendonStep at_last(const TendonLaw& law, double slip) const;
+};
+
+/// Parts of a line, one after the other, with a guide between each two, over which the line may slip. Tensions at the
+/// end of the step decide: with means, those at the ends would swing about them, and more so from step to step.
+class TendonSlip {
+ public:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// `parts`: of the line. `ratios`: per guide, the largest ratio of the tensions on both sides, >= 1, or kNever. Finds
+  /// the slips with which no ratio is exceeded, and with which the line slips towards the larger tension only where the
+  /// ratio is reached. Returns false if it does not find them.
+  bool solve(const TendonLaw& law, const std::vector<TendonPartStep>& parts, const std::vector<double>& ratios);
+
+  /// Gives all parts the same tension, whatever their lengths.
+  void set_tension(int parts, double tension);
+
+  /// Per part: what it does.
+  const std::vector<TendonStep>& steps() const { return steps_; }
+  /// Per part: what it does at the end of the step; the ratios are those of these tensions.
+  const std::vector<TendonStep>& ends() const { return ends_; }
+  /// Per guide: the length that has come from the part before it to the part behind it [m].
+  const Eigen::VectorXd& slips() const { return slips_; }
+  /// What the rest length of a part gains by slipping [m].
+  double gain(int part) const { return (part > 0 ? slips_[part - 1] : 0) - (part < slips_.size() ? slips_[part] : 0); }
+  /// Derivatives of the slips by the lengths and the rest lengths of the parts at the end, for solve()'s last result.
+  void find_slopes();
+  const Eigen::MatrixXd& by_length() const { return by_length_; }
+  const Eigen::MatrixXd& by_rest() const { return by_rest_; }
+
+ private:
+  void evaluate();
+  void evaluate(int part) { ends_[part] = (*parts_)[part].at_last(*law_, gain(part)); }
+  double excess(int guide, int way) const;
+  void settle(int guide);
+  bool iterate();
+  bool find_slips();
+  bool is_solved();
+  void assemble();
+
+  const TendonLaw* law_ = nullptr;                      // during solve()
+  const std::vector<TendonPartStep>* parts_ = nullptr;  // during solve()
+  double round_off_ = 0;                                // of tensions [N]
+  std::vector<TendonStep> steps_, ends_;                // per part, over the step and at its end
+  std::vector<int> ways_;                               // per guide: 1 and -1: it slips; 0: it sticks
+  std::vector<double> ratios_;
+  Eigen::VectorXd slips_, settled_, right_, update_;
+  Eigen::MatrixXd slopes_, by_length_, by_rest_, solution_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+};
+
+}  // namespace flexarm

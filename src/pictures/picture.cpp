@@ -1,0 +1,181 @@
+#include "pictures/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "pictures/surface_meshes.h"
+#include "scene/joint_kind_names.h"
+
+namespace flexarm::pictures {
+namespace {
+
+/// A beam has at least so many sections. Between them the page draws cubic curves.
+constexpr int kFewestSections = 7;
+
+/// Whether the joint's axis is a direction of the link that it carries, whatever its position.
+bool has_axis(scene::JointKind kind) {
+  using scene::JointKind;
+  return kind != JointKind::Fixed && kind != JointKind::Floating && kind != JointKind::Spherical &&
+         kind != JointKind::Universal && kind != JointKind::Slide;
+}
+
+class PictureMaker {
+ public:
+  PictureMaker(const Simulation& simulation, const std::vector<ResultColumn>& columns)
+      : simulation_(simulation), scene_(simulation.scene()) {
+    picture_.name = scene_.name;
+    picture_.gravity = scene_.gravity;
+    picture_.probes = scene_.probes;
+    picture_.grounds = scene_.grounds;
+    picture_.columns = columns;
+    for (std::size_t i = 0; i < scene_.links.size(); ++i) links_[scene_.links[i].name] = static_cast<int>(i);
+  }
+
+  Picture make() {
+    for (std::size_t i = 0; i < scene_.links.size(); ++i) add_link(i);
+    for (const scene::JointDescription& joint : scene_.joints) add_joint(joint);
+    for (std::size_t i = 0; i < scene_.force_elements.size(); ++i)
+      if (const std::size_t points = simulation_.most_line_points(i); points > 1)
+        picture_.lines.push_back({scene_.force_elements[i]->kind(), scene_.force_elements[i]->name, i, points});
+    picture_.extent = scene_extent(simulation_, shown_points());
+    return std::move(picture_);
+  }
+
+ private:
+  void add_link(std::size_t index) {
+    const scene::LinkDescription& link = scene_.links[index];
+    picture_.links.push_back({link.name});
+    add_beam(index);
+    for (const scene::VisualDescription& visual : link.visuals) add_shape(link.name, visual);
+  }
+
+  void add_beam(std::size_t index) {
+    std::vector<BeamPoint> points;
+    const auto count = [&](int between) {
+      points.clear();
+      simulation_.beam_points(index, between, points);
+      return static_cast<int>(points.size());
+    };
+    if (!scene_.links[index].beam) return;
+    const int intervals = count(0) - 1;
+    if (intervals < 1) return;
+    const int between = std::max(0, (kFewestSections - 2) / intervals);
+    count(between);
+    picture_.links.back().beam = static_cast<int>(picture_.beams.size());
+    PictureBeam beam{
+        index, {}, simulation_.undeformed_sections(index, between), simulation_.beam_radius(index), between};
+    for (const BeamPoint& point : points) beam.arc_lengths.push_back(point.arc_length);
+    beam.tube = tube_radius(*scene_.links[index].beam, beam);
+    picture_.beams.push_back(std::move(beam));
+  }
+
+  /// The radius of a section that is only known by its stiffness is that of a circle with the same stiffness, and may
+  /// be large. Such a beam is drawn slender.
+  static double tube_radius(const scene::BeamDescription& given, const PictureBeam& beam) {
+    constexpr double kSlender = 1.0 / 60;
+    const bool has_shape = !std::holds_alternative<scene::DirectSection>(given.section) &&
+                           !std::holds_alternative<scene::MatrixSection>(given.section);
+    return has_shape ? beam.radius : std::min(beam.radius, kSlender * beam.arc_lengths.back());
+  }
+
+  void add_shape(const std::string& link, const scene::VisualDescription& visual) {
+    PictureShape shape{visual.origin, {}, visual.color};
+    try {
+      std::visit(
+          [&](const auto& given) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(given)>, scene::MeshShape>)
+              shape.shape = mesh_index(given);
+            else
+              shape.shape = given;
+          },
+          visual.shape);
+      picture_.links.back().shapes.push_back(std::move(shape));
+    } catch (const std::runtime_error& error) {
+      picture_.notes.push_back(fmt::format("link '{}': the mesh '{}' is not shown: {}", link,
+                                           std::get<scene::MeshShape>(visual.shape).url, error.what()));
+    }
+  }
+
+  std::size_t mesh_index(const scene::MeshShape& mesh) {
+    const auto same = [&](const PictureMesh& known) { return known.name == mesh.url && known.scale == mesh.scale; };
+    auto known = std::find_if(picture_.meshes.begin(), picture_.meshes.end(), same);
+    if (known == picture_.meshes.end())
+      known = picture_.meshes.insert(known, {mesh.url, mesh.scale, surface_of_mesh(mesh, scene_.file)});
+    return static_cast<std::size_t>(known - picture_.meshes.begin());
+  }
+
+  void add_joint(const scene::JointDescription& joint) {
+    const int parent = links_.at(joint.parent), child = links_.at(joint.child);
+    picture_.links[child].parent = parent;
+    if (picture_.links[parent].beam < 0 && joint.kind != scene::JointKind::Floating &&
+        joint.kind != scene::JointKind::Planar)
+      picture_.links[parent].stick.push_back(place_in(parent, child));
+    if (joint.is_hidden) return;
+    PictureJoint shown{joint.name, name_of(joint.kind), static_cast<std::size_t>(child), {}, {}};
+    if (has_axis(joint.kind)) shown.axis = joint.axis;
+    for (std::size_t i = 0; i < picture_.columns.size(); ++i)
+      if (is_of(joint, picture_.columns[i].name)) shown.columns.push_back(i);
+    picture_.joints.push_back(std::move(shown));
+  }
+
+  /// Probes, and corners of boxes around shapes, in the frames of their links.
+  std::vector<std::vector<Vector3>> shown_points() const {
+    std::vector<std::vector<Vector3>> points(picture_.links.size());
+    for (const scene::Probe& probe : scene_.probes) points[links_.at(probe.link)].push_back(probe.at);
+    for (std::size_t link = 0; link < points.size(); ++link)
+      for (const PictureShape& shape : picture_.links[link].shapes) {
+        const Eigen::AlignedBox3d box = box_around(shape);
+        for (int corner = 0; corner < 8; ++corner)
+          points[link].push_back(shape.pose * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+      }
+    return points;
+  }
+
+  Eigen::AlignedBox3d box_around(const PictureShape& shape) const {
+    Eigen::AlignedBox3d box;
+    const auto add_half = [&](const Vector3& half) { box.extend(half).extend(-half); };
+    std::visit(
+        [&](const auto& given) {
+          using Shape = std::decay_t<decltype(given)>;
+          if constexpr (std::is_same_v<Shape, scene::BoxShape>) add_half(0.5 * given.size);
+          if constexpr (std::is_same_v<Shape, scene::SphereShape>) add_half(Vector3::Constant(given.radius));
+          if constexpr (std::is_same_v<Shape, scene::CylinderShape>)
+            add_half({given.radius, given.radius, 0.5 * given.length});
+          if constexpr (std::is_same_v<Shape, std::size_t>)
+            for (const auto& vertex : picture_.meshes[given].surface.vertices) box.extend(vertex.position);
+        },
+        shape.shape);
+    return box;
+  }
+
+  /// The origin of a link in the frame of another one, now.
+  Vector3 place_in(int link, int other) const {
+    return simulation_.link_pose(link).inverse() * simulation_.link_pose(other).position;
+  }
+
+  static bool is_of(const scene::JointDescription& joint, const std::string& column) {
+    const auto& suffixes = scene::coordinate_suffixes(joint);
+    return std::any_of(suffixes.begin(), suffixes.end(), [&](const std::string& suffix) {
+      const std::string prefix = "joint/" + joint.name + suffix + "/";
+      return column.compare(0, prefix.size(), prefix) == 0 && column.find('/', prefix.size()) == std::string::npos;
+    });
+  }
+
+  const Simulation& simulation_;
+  const scene::SceneDescription& scene_;
+  std::map<std::string, int> links_;
+  Picture picture_;
+};
+
+}  // namespace
+
+Picture picture_of(const Simulation& simulation, const std::vector<ResultColumn>& columns) {
+  return PictureMaker(simulation, columns).make();
+}
+
+}  // namespace flexarm::pictures

@@ -1,0 +1,80 @@
+// Tests how lines slip over guides with friction: ratios of tensions, derivatives against differences.
+#include "elements/tendon_slip.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flexarm::test {
+namespace {
+
+const TendonLaw kLaw{1000, 2};
+
+/// Parts of 1 m of rest length that are stretched by these amounts at the end of a step, and by half of them before.
+std::vector<TendonPartStep> parts_with(const std::vector<double>& stretches) {
+  std::vector<TendonPartStep> parts;
+  for (const double stretch : stretches) parts.push_back({{1 + 0.5 * stretch, 1}, {1 + stretch, 1}, 0.01});
+  return parts;
+}
+
+TEST(TendonSlip, SticksWithinTheRatio) {
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts_with({0.01, 0.012, 0.009}), {1.5, 1.5}));
+  EXPECT_EQ(slip.slips().norm(), 0);
+}
+
+TEST(TendonSlip, SlipsUntilTheRatioIsReached) {
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts_with({0.01, 0.03, 0.001}), {1.5, 2}));
+  EXPECT_GT(slip.slips()[0], 0);  // towards the larger tension
+  EXPECT_LT(slip.slips()[1], 0);
+  EXPECT_NEAR(slip.ends()[1].tension, 1.5 * slip.ends()[0].tension, 1e-9);
+  EXPECT_NEAR(slip.ends()[1].tension, 2 * slip.ends()[2].tension, 1e-9);
+}
+
+TEST(TendonSlip, WithoutFrictionTensionsAreEqual) {
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts_with({0.01, 0.03, 0.001, 0, -0.01}), {1, 1, 1, 1}));
+  for (const TendonStep& step : slip.ends()) EXPECT_NEAR(step.tension, slip.ends()[0].tension, 1e-9);
+}
+
+TEST(TendonSlip, NeverSlipsWhereItGrips) {
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts_with({0.01, 0.5}), {TendonSlip::kNever}));
+  EXPECT_EQ(slip.slips()[0], 0);
+}
+
+// A slack part gives its line to a taut one until that is slack, too, or both are taut.
+TEST(TendonSlip, TakesFromSlackParts) {
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts_with({-0.1, 0.02}), {2}));
+  EXPECT_NEAR(slip.ends()[1].tension, 0, 1e-9);
+  EXPECT_GE(slip.slips()[0], 0);
+}
+
+// Central differences with the step 1e-6 of a function with kinks, none of which is near: second order.
+TEST(TendonSlip, HasItsDerivatives) {
+  constexpr double h = 1e-6;
+  const std::vector<TendonPartStep> parts = parts_with({0.01, 0.03, 0.029, 0.001, 0.05});
+  const std::vector<double> ratios = {1.5, 1.2, 2, TendonSlip::kNever};
+  TendonSlip slip;
+  ASSERT_TRUE(slip.solve(kLaw, parts, ratios));
+  slip.find_slopes();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto slips = [&](double length, double rest) {
+      std::vector<TendonPartStep> other = parts;
+      other[p].end.length += length;
+      other[p].end.rest += rest;
+      TendonSlip there;
+      EXPECT_TRUE(there.solve(kLaw, other, ratios));
+      return Eigen::VectorXd(there.slips());
+    };
+    const Eigen::Index column = static_cast<Eigen::Index>(p);
+    EXPECT_LT(((slips(h, 0) - slips(-h, 0)) / (2 * h) - slip.by_length().col(column)).norm(), 1e-6);
+    EXPECT_LT(((slips(0, h) - slips(0, -h)) / (2 * h) - slip.by_rest().col(column)).norm(), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
