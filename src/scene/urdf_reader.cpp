@@ -246,7 +246,7 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   if (!parse_xml(text, document, findings)) return std::nullopt;
   tinyxml2::XMLElement* root = document.RootElement();
   if (!root || std::string_view(root->Name()) != "robot") {
-    findings.error(root ? root->GetLineNum() : 0, "", "the outermost element must be <robot>",
+    findings.error(root ? root->GetLineNum() : 1, "", "the outermost element must be <robot>",
                    root ? quoted(root->Name()) : "");
     return std::nullopt;
   }

@@ -127,7 +127,7 @@ std::string parse_error_text(const tinyxml2::XMLDocument& document) {
 /// Records an error of the parser. A declaration that is not at the very beginning gets a message of its own, since
 /// many files have a licence before it.
 void tell_parse_error(const std::string& text, const tinyxml2::XMLDocument& document, Findings& findings) {
-  const int line = document.ErrorLineNum();
+  const int line = std::max(1, document.ErrorLineNum());  // the parser says 0 for an empty document
   if (document.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
     return findings.error(line, "", "elements may be nested " + std::to_string(kDeepestNesting) + " deep");
   std::size_t late = kEnd;  // position of a declaration after the first tag or comment

@@ -17,7 +17,7 @@ constexpr int kSteps = 3;
 /// Returns the first error of `name` without a line number, except errors about the file or scene as a whole.
 std::string without_line(const scene::Diagnostics& findings) {
   for (const scene::Diagnostic& finding : findings) {
-    const bool is_of_whole = finding.element == "file" || finding.element == "scene";
+    const bool is_of_whole = finding.element.empty() || finding.element == "scene";
     if (finding.line <= 0 && !is_of_whole) return "no line: " + finding.text();
   }
   return "";

@@ -30,7 +30,8 @@ void expect_consistent(const ReadResult& result) {
 }  // namespace
 
 TEST(HostileInput, NotXml) {
-  expect_one_error("", 0, "must be well-formed XML");
+  expect_one_error("", 1, "must be well-formed XML, but the file is empty");
+  expect_one_error("<!-- nothing -->", 1, "the outermost element must be <robot>");
   expect_one_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>", 2,
                    "must be well-formed XML, but <link> has no end tag </link>");
   expect_one_error("<robot name=\"r\">\n<link name='a' name='b'/></robot>", 2, "must be well-formed XML");
