@@ -148,6 +148,18 @@ ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::
   return place;
 }
 
+/// Index of the tendon that a sensor measures, in the scene's list and the model's, which begins with these elements.
+std::size_t tendon_of(const scene::SceneDescription& scene, const scene::Sensor& sensor) {
+  const auto& elements = scene.force_elements;
+  const auto found = std::find_if(elements.begin(), elements.end(), [&](const auto& element) {
+    return std::string_view(element->kind()) == "tendon" && element->name == sensor.tendon;
+  });
+  if (found == elements.end())
+    throw ModelError(at(sensor.location, "<sensor> '" + sensor.name + "'") + "there is no tendon '" + sensor.tendon +
+                     "'");
+  return static_cast<std::size_t>(found - elements.begin());
+}
+
 /// Index into Model::reactions. Sensors of the same reaction share an entry.
 int index_of(const ReactionPlace& place, Model& model) {
   const auto same = std::find(model.reactions.begin(), model.reactions.end(), place);
@@ -175,6 +187,7 @@ void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& mod
     SensorPlace place{probe_point(plan, model, sensor.link, sensor.at)};
     if (measures_reaction(sensor.kind))
       place.reaction = index_of(reaction_place(plan.scene, sensor, model.links[link], mechanism, model), model);
+    if (sensor.kind == SensorKind::Tendon) place.force_element = tendon_of(plan.scene, sensor);
     model.sensors.push_back(place);
   }
 }

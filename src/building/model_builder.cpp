@@ -61,7 +61,7 @@ bool is_determined(const BuiltModel& built) {
 bool has_winches(const scene::SceneDescription& scene) {
   return std::any_of(scene.force_elements.begin(), scene.force_elements.end(), [](const auto& element) {
     const std::vector<scene::LinkPoint> points = element->points();
-    return std::any_of(points.begin(), points.end(), [](const auto& point) { return point.attribute == "winch"; });
+    return std::any_of(points.begin(), points.end(), [](const auto& point) { return point.attribute == scene::kReel; });
   });
 }
 

@@ -57,6 +57,10 @@ std::string Tendon::description() const {
   return parts_ == 1 ? text : fmt::format("{}, {} parts", text, parts_);
 }
 
+bool Tendon::suits_backward_steps() const {
+  return std::all_of(plan_.guides.begin(), plan_.guides.end(), [](const auto& guide) { return guide.friction == 0; });
+}
+
 Tendon::Scratch& Tendon::scratch() const {
   return Scratch::of(parts_, 6 * reach().size());
 }
@@ -124,6 +128,21 @@ void Tendon::find_angles(const Poses& poses, const NewMemory& memory, bool is_ne
 
 void Tendon::start(const State& state, const double* functions, double* numbers) const {
   begin(Poses(state), this->functions().empty() ? plan_.rest_length : functions[0], {numbers, parts_});
+}
+
+/// What drums have wound up and what has slipped stays, and so do the rest lengths of all parts.
+void Tendon::carry(const ForceElement& before, const double* old_numbers, const State& state, double* numbers) const {
+  const auto* other = dynamic_cast<const Tendon*>(&before);
+  if (!other || other->parts_ != parts_ || other->plan_.guides.size() != plan_.guides.size()) return;
+  const Memory old{old_numbers, parts_};
+  const NewMemory memory{numbers, parts_};
+  const double function = functions().empty() ? plan_.rest_length : memory.function();
+  std::copy_n(old_numbers, memory_size(), numbers);
+  memory.function() = function;
+  for (int part = 0; part < parts_; ++part)
+    memory.rims_at_start(part) += shares_[part] * function - other->shares_[part] * old.function();
+  find_angles(Poses(state), memory, false);
+  find_touched(Poses(state), memory);
 }
 
 /// Sets the memory to that of a line that has not moved yet.

@@ -68,7 +68,9 @@ class Tendon : public ForceElement {
   DamperTensions dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const override;
   int memory_size() const override { return 1 + 2 * parts_ + 3 * static_cast<int>(plan_.guides.size()); }
   bool uses_means() const override { return plan_.has_tension; }
+  bool suits_backward_steps() const override;
   void start(const State& state, const double* functions, double* memory) const override;
+  void carry(const ForceElement& before, const double* old_memory, const State& state, double* memory) const override;
   std::vector<ForceOutput> outputs() const override;
   void put_out(const ForceMotion& motion, std::vector<double>& values) const override;
   void put_line(const ForceMotion& motion, std::vector<Vector3>& points) const override;

@@ -134,8 +134,13 @@ void find_place(const StepSystem& system, StepResult::Failure& failure) {
     case Reason::OpenLoop:
       failure.place = place_of_loop(configuration.model(), configuration.state(), system.largest_opening().closure);
       return;
-    case Reason::NoConvergence:
     case Reason::NotFinite:
+      if (system.not_finite_force() >= 0) {
+        failure.place = place_of_force_element(configuration.model(), configuration.state(), system.not_finite_force());
+        return;
+      }
+      return find_largest_residual(system, failure);
+    case Reason::NoConvergence:
       return find_largest_residual(system, failure);
     case Reason::None:
     case Reason::BentTooFar:

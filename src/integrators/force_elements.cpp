@@ -1,6 +1,7 @@
 #include "integrators/force_elements.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -23,10 +24,10 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
   const Scheme& scheme = configuration.scheme();
   const bool is_plain = scheme.is_static || (scheme.is_incremental() && !scheme.is_composition);
   for (const auto& element : elements)
-    if (!is_plain && !element->suits_all_schemes())
+    if ((!is_plain && !element->suits_all_schemes()) || (scheme.is_composition && !element->suits_backward_steps()))
       throw ModelError(
-          fmt::format("<integrator>: scheme '{}' has no <{}>; take one of the energy-momentum family, such as em",
-                      scheme.name, element->kind()));
+          fmt::format("<integrator>: scheme '{}' has no <{}>{}; take one of the energy-momentum family, such as em",
+                      scheme.name, element->kind(), element->suits_all_schemes() ? " with friction" : ""));
   if (scheme.hht != HhtForm::None)
     throw ModelError(
         fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
@@ -101,6 +102,7 @@ void ForceElements::evaluate(Balance& balance) {
   if (nodes_.empty()) return;
   ForceStep step = this->step();
   work_ = 0;
+  not_finite_ = -1;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     if (!acts_[k]) continue;
     step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
@@ -115,6 +117,7 @@ void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& bala
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()), rows = balance.tangent ? size : 0;
   ForceAction action{{residual_.data(), size}, {tangent_.data(), rows, rows}};
   configuration_.model().force_elements[k]->evaluate(step, nodes.data(), action);
+  if (not_finite_ < 0 && !std::isfinite(action.residual.sum())) not_finite_ = static_cast<int>(k);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     balance.residual.node(nodes[i]) += action.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
   if (balance.tangent) balance.tangent->add_coupling(static_cast<int>(k), action.tangent);

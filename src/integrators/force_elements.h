@@ -27,6 +27,8 @@ class ForceElements {
   bool need_halves(double refinement);
   /// Whether there may be a hit in the step begun last, see ForceElement::hits().
   bool may_hit() const { return may_hit_; }
+  /// The first element whose forces were not finite at the last evaluation; -1: none.
+  int not_finite() const { return not_finite_; }
   /// Adds the work of the elements at the last evaluation [J].
   void add_work(double& work) const { work += work_; }
   void accept(State& state) const;
@@ -47,6 +49,7 @@ class ForceElements {
   std::vector<Vector6> velocities_;      // per node: {v, w} at the beginning of the step
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
+  int not_finite_ = -1;
   bool may_hit_ = false;
   bool may_be_far_ = false;  // whether there is an element that can hit
 };

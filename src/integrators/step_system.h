@@ -120,6 +120,8 @@ class StepSystem {
   bool may_hit() { return contacts_.may_hit() || force_elements_.may_hit(); }
   /// Whether bodies touch each other, or may do so in the step begun last.
   bool touches() const { return force_elements_.may_hit(); }
+  /// The force element whose forces were not finite at the last evaluation; -1: none.
+  int not_finite_force() const { return force_elements_.not_finite(); }
   /// Internal minus external forces on all nodes in the configuration of `state`, before joints fold them. The scheme
   /// must be made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

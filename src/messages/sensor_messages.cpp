@@ -45,6 +45,13 @@ StrainStamped strain_message(const SensorSample& sample) {
   return message;
 }
 
+TendonStamped tendon_message(const SensorSample& sample) {
+  TendonStamped message;
+  message.length = sample.values[0];
+  message.tension = sample.values[1];
+  return message;
+}
+
 SensorMessage message_of(SensorKind kind, const SensorSample& sample) {
   switch (kind) {
     case SensorKind::Imu:
@@ -53,6 +60,8 @@ SensorMessage message_of(SensorKind kind, const SensorSample& sample) {
       return pose_message(sample);
     case SensorKind::Strain:
       return strain_message(sample);
+    case SensorKind::Tendon:
+      return tendon_message(sample);
     default:
       return wrench_message(sample);
   }

@@ -184,14 +184,23 @@ class ForceElement {
   virtual void start(const State& state, const double* functions, double* memory) const {
     static_cast<void>(state), static_cast<void>(functions), static_cast<void>(memory);
   }
+  /// Continues a memory after a program has changed the mechanism at an instant. `before` is the same element before
+  /// the change: this one if positions were set, else the one of the model before an edit. Between both configurations
+  /// no node turns by half a turn or more. `memory`: on input what start() writes for `state`; the default leaves it.
+  virtual void carry(const ForceElement& before, const double* old_memory, const State& state, double* memory) const {
+    static_cast<void>(before), static_cast<void>(old_memory), static_cast<void>(state), static_cast<void>(memory);
+  }
   /// Whether any number of the element's memory is not zero.
   bool remembers(const double* memory) const {
     return std::any_of(memory, memory + memory_size(), [](double number) { return number != 0; });
   }
 
   /// Whether the element works with all schemes. False if it cannot give forces at the end of a step, which the Newmark
-  /// family needs, and does not admit backward steps (of composition schemes), which would undo dissipation.
+  /// family needs, and does not suit backward steps.
   virtual bool suits_all_schemes() const { return true; }
+  /// Whether the element works with backward steps (of composition schemes). They would undo the dissipation of
+  /// friction.
+  virtual bool suits_backward_steps() const { return suits_all_schemes(); }
 
   // ---- output
   virtual std::vector<ForceOutput> outputs() const { return {}; }

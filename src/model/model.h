@@ -167,6 +167,7 @@ struct SensorPlace {
   ProbePoint point;
   int reaction = -1;  ///< index into Model::reactions; -1: it does not measure a reaction
   std::vector<Touched> touched = {};
+  std::size_t force_element = 0;  ///< of a sensor of a tendon: index into Model::force_elements
 };
 
 struct Model {

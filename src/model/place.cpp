@@ -60,4 +60,12 @@ Place place_of_loop(const Model& model, const State& state, int loop) {
   return place;
 }
 
+Place place_of_force_element(const Model& model, const State& state, int element) {
+  Place place;
+  place.force_element = element;
+  const std::vector<int>& reach = model.force_elements[element]->reach();
+  if (!reach.empty()) place.position = world_origin(model, state) + state.nodes[reach.front()].position;
+  return place;
+}
+
 }  // namespace flexarm

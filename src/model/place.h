@@ -15,5 +15,7 @@ StepResult::Place place_of_node(const Model& model, const State& state, int node
 /// Returns the place of the joint's slave, and the coordinate, if the joint has one with this component.
 StepResult::Place place_of_joint(const Model& model, const State& state, int joint, int component = 0);
 StepResult::Place place_of_loop(const Model& model, const State& state, int loop);
+/// Returns the place of the first node on which the force element acts.
+StepResult::Place place_of_force_element(const Model& model, const State& state, int element);
 
 }  // namespace flexarm

@@ -12,6 +12,14 @@ std::vector<double> PointSpring::numbers() const {
   return numbers;
 }
 
+std::shared_ptr<ForceElementDescription> PointSpring::with_links(const LinkChanges& change) const {
+  auto out = std::make_shared<PointSpring>(*this);
+  const LinkChange first = change(from), second = change(to);
+  out->from = first.name, out->from_at = first.frame * from_at;
+  out->to = second.name, out->to_at = second.frame * to_at;
+  return out;
+}
+
 std::shared_ptr<const ForceElement> PointSpring::place(const ForcePlacement& placement) const {
   const std::vector<NodePoint>& places = placement.places;
   const std::vector<Vector3>& positions = placement.positions;

@@ -47,7 +47,7 @@ const std::vector<std::string>& coordinate_suffixes(const JointDescription& join
 const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
   static const std::vector<SensorChannel> wrench = {{"fx", "N"},   {"fy", "N"},   {"fz", "N"},
                                                     {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}},
-                                          strain = {{"strain", "1"}},
+                                          strain = {{"strain", "1"}}, tendon = {{"length", "m"}, {"tension", "N"}},
                                           imu = {{"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"},
                                                  {"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}},
                                           pose = {{"x", "m"},  {"y", "m"},  {"z", "m"}, {"qx", "1"},
@@ -64,6 +64,8 @@ const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
       return imu;
     case SensorKind::Pose:
       return pose;
+    case SensorKind::Tendon:
+      return tendon;
   }
   return wrench;
 }

@@ -11,9 +11,9 @@ namespace flexarm::scene {
 namespace {
 
 constexpr Choice<SensorKind> kKinds[] = {
-    {"wrench", SensorKind::Wrench},  {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
-    {"strain", SensorKind::Strain},  {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose},
-    {"contact", SensorKind::Contact}};
+    {"wrench", SensorKind::Wrench},   {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
+    {"strain", SensorKind::Strain},   {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose},
+    {"contact", SensorKind::Contact}, {"tendon", SensorKind::Tendon}};
 constexpr std::size_t kMostErrors = 6;
 /// The upper bound lets the samples of a run of years be counted.
 constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
@@ -44,14 +44,21 @@ Sensor read_sensor(const XmlElement& unnamed) {
   out.name = unnamed.name("name").value_or("");
   out.location = unnamed.location();
   const XmlElement sensor = unnamed.with_name(out.name);
-  sensor.expect_only({"name", "kind", "link", "joint", "group", "at", "rate", "noise", "bias", "seed"});
-  out.link = sensor.name("link").value_or("");
+  sensor.expect_only({"name", "kind", "link", "joint", "group", "tendon", "at", "rate", "noise", "bias", "seed"});
+  const std::optional<SensorKind> kind = read_choice(sensor, "kind", kKinds);
+  if (kind == SensorKind::Tendon) {
+    out.tendon = sensor.name("tendon").value_or("");
+    for (const char* attribute : {"link", "joint", "group", "at"})
+      if (sensor.has(attribute)) sensor.attribute_error(attribute, "a sensor of a tendon has no such attribute");
+  } else {
+    out.link = sensor.name("link").value_or("");
+    if (sensor.has("tendon")) sensor.attribute_error("tendon", "tendon is for sensors of kind tendon");
+  }
   if (sensor.has("joint")) out.joint = sensor.name("joint").value_or("");
   if (sensor.has("group")) out.group = read_group(sensor);
   out.at = sensor.vector("at", out.at);
   if (sensor.has("rate")) out.rate = sensor.number("rate", kRate).value_or(0);
   if (sensor.has("seed")) out.seed = sensor.integer("seed", 0, std::numeric_limits<int>::max()).value_or(0);
-  const std::optional<SensorKind> kind = read_choice(sensor, "kind", kKinds);
   if (!kind) return out;
   out.kind = *kind;
   out.noise = read_errors(sensor, "noise", sensor_error_count(*kind));
@@ -59,6 +66,18 @@ Sensor read_sensor(const XmlElement& unnamed) {
   if (std::any_of(out.noise.begin(), out.noise.end(), [](double deviation) { return deviation < 0; }))
     sensor.attribute_error("noise", "noise is a standard deviation, >= 0");
   return out;
+}
+
+void connect_tendon_sensors(SceneDescription& scene, Findings& findings) {
+  for (Sensor& sensor : scene.sensors) {
+    if (sensor.kind != SensorKind::Tendon || sensor.tendon.empty()) continue;
+    const auto tendon = find_tendon(scene, sensor.tendon);
+    if (tendon == scene.force_elements.end())
+      findings.error(sensor.location.line, "<sensor> " + quoted(sensor.name), "tendon must be the name of a <tendon>",
+                     quoted(sensor.tendon));
+    else if (const std::vector<LinkPoint> points = (*tendon)->points(); !points.empty())
+      sensor.link = points.front().link;
+  }
 }
 
 }  // namespace flexarm::scene

@@ -33,7 +33,7 @@ flexarm::TendonGuide placed(const TendonDescription::Guide& guide, const NodePoi
 std::vector<LinkPoint> TendonDescription::points() const {
   std::vector<LinkPoint> out;
   for (const Guide& guide : guides) out.push_back({"link", guide.link, guide.at});
-  for (const Winch& winch : winches) out.push_back({"winch", winch.link, Vector3::Zero()});
+  for (const std::string& reel : reels) out.push_back({kReel, reel, Vector3::Zero()});
   return out;
 }
 
@@ -50,6 +50,18 @@ std::vector<double> TendonDescription::numbers() const {
     out.insert(out.end(), {guide.radius, guide.axis[0], guide.axis[1], guide.axis[2], guide.turns_left ? 1.0 : -1.0,
                            guide.grips ? 1.0 : 0.0, guide.wrap});
   }
+  return out;
+}
+
+std::shared_ptr<ForceElementDescription> TendonDescription::with_links(const LinkChanges& change) const {
+  auto out = std::make_shared<TendonDescription>(*this);
+  for (Guide& guide : out->guides) {
+    const auto [link, frame] = change(guide.link);
+    guide.link = link;
+    guide.at = frame * guide.at;
+    guide.axis = frame.orientation * guide.axis;
+  }
+  for (std::string& reel : out->reels) reel = change(reel).name;
   return out;
 }
 

@@ -95,6 +95,7 @@ class SceneReader {
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
     add_winches(winches_, scene_, findings_);  // on the world, even if the root link of the file moves
+    connect_tendon_sensors(scene_, findings_);
     check_inertias(scene_, findings_);
     warn_of_units(scene_, findings_);
     settle_positions(scene_, start_, unreadable_, findings_);

@@ -8,13 +8,19 @@ namespace flexarm::scene {
 namespace {
 
 /// Lets a winch pay out a tendon. The scene shares tendons with its copies, so the tendon is replaced.
-void connect(const ReadWinch& winch, const std::string& link, std::shared_ptr<const ForceElementDescription>& element) {
+void connect(const std::string& reel, std::shared_ptr<const ForceElementDescription>& element) {
   auto tendon = std::make_shared<TendonDescription>(dynamic_cast<const TendonDescription&>(*element));
-  tendon->winches.push_back({winch.travel.name, link});
+  tendon->reels.push_back(reel);
   element = std::move(tendon);
 }
 
 }  // namespace
+
+ForceElementDescriptions::iterator find_tendon(SceneDescription& scene, const std::string& name) {
+  return std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& element) {
+    return std::string_view(element->kind()) == "tendon" && element->name == name;
+  });
+}
 
 ReadWinch read_winch(const XmlElement& unnamed) {
   ReadWinch out;
@@ -38,20 +44,22 @@ void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene,
     const auto is_taken = [&](const auto& things, const std::string& name) {
       return std::any_of(things.begin(), things.end(), [&](const auto& thing) { return thing.name == name; });
     };
-    if (is_taken(scene.joints, winch.travel.name) || is_taken(scene.loop_joints, winch.travel.name))
+    if (is_taken(scene.joints, winch.travel.name) || is_taken(scene.loop_joints, winch.travel.name)) {
       error("the name of its coordinate is taken by a joint", winch.travel.name);
-    if (is_taken(scene.links, link)) error("the name of its reel is taken by a link", link);
-    const auto tendon =
-        std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& element) {
-          return std::string_view(element->kind()) == "tendon" && element->name == winch.tendon;
-        });
+      continue;
+    }
+    if (is_taken(scene.links, link)) {
+      error("the name of its reel is taken by a link", link);
+      continue;
+    }
+    const auto tendon = find_tendon(scene, winch.tendon);
     if (tendon == scene.force_elements.end()) {
       if (!winch.tendon.empty()) error("tendon must be the name of a <tendon>", winch.tendon);
       continue;
     }
     if (dynamic_cast<const TendonDescription&>(**tendon).tension)
       error("a tendon of given tension has no length to pay out: give it ea", winch.tendon);
-    connect(winch, link, *tendon);
+    connect(link, *tendon);
     JointDescription travel = winch.travel;
     travel.parent = scene.root_link;
     travel.child = link;

@@ -319,13 +319,15 @@ class Carrier {
     for_each_memory(new_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
       const auto found = old.find(key);
       if (found == old.end() || found->second.first->memory_size() != element.memory_size()) return;
+      const ForceElement& before = *found->second.first;
+      const double* then = state_.force_memory.data() + found->second.second;
+      double* now = out.force_memory.data() + memory;
       // The memory may contain positions in frames of nodes, so all nodes have to correspond.
-      const std::vector<int>&own = element.reach(), &other = found->second.first->reach();
+      const std::vector<int>&own = element.reach(), &other = before.reach();
       const bool is_same = std::equal(own.begin(), own.end(), other.begin(), other.end(),
                                       [&](int a, int b) { return same_.nodes[a] == b; });
-      if (!is_same) return;
-      const auto begin = state_.force_memory.begin() + static_cast<std::ptrdiff_t>(found->second.second);
-      std::copy(begin, begin + element.memory_size(), out.force_memory.begin() + static_cast<std::ptrdiff_t>(memory));
+      if (is_same) std::copy_n(then, element.memory_size(), now);
+      element.carry(before, then, out, now);
     });
   }
 

@@ -54,6 +54,9 @@ std::string advice(const Model& model, const StepResult& result) {
              "points; "
              "see flexarm check";
     case Reason::NotFinite:
+      if (failure.place.force_element >= 0)
+        return "a finite function of time; for a line: guides outside the rims of its pulleys, and a rest length above "
+               "0";
       return "finite loads, efforts and motions: look at their functions of time and at commands";
     case Reason::RotationTooLarge:
       // The failed sub-step turns by `amount`. Suggest the length of one that turns by half a radian.
@@ -87,7 +90,8 @@ void require_place(const Model& model, const StepResult& result) {
   const StepResult::Place& place = result.failure.place;
   const auto is_below = [](int index, std::size_t count) { return index < static_cast<int>(count); };
   const bool is_here = is_below(place.coordinate, model.coordinates.size()) &&
-                       is_below(place.loop, model.closures.size()) && is_below(place.link, model.links.size());
+                       is_below(place.loop, model.closures.size()) && is_below(place.link, model.links.size()) &&
+                       is_below(place.force_element, model.force_elements.size());
   const bool needs_element = place.element >= 0 || result.reason == StepResult::Reason::BentTooFar;
   if (!is_here || (needs_element && (place.link < 0 || !model.links[place.link].beam)))
     throw std::invalid_argument("result: its place is not in this scene; call explain() of the simulation that failed");
@@ -98,6 +102,12 @@ void require_place(const Model& model, const StepResult& result) {
 std::string place_name(const Model& model, const StepResult::Place& place) {
   if (place.coordinate >= 0) return fmt::format("joint coordinate '{}'", model.coordinates[place.coordinate].name);
   if (place.loop >= 0) return fmt::format("loop joint '{}'", model.closures[place.loop].name);
+  if (place.force_element >= 0) {
+    const ForceElement& element = *model.force_elements[place.force_element];
+    const std::vector<std::string> links = element.links();
+    if (!element.name().empty()) return fmt::format("<{}> '{}'", element.kind(), element.name());
+    return fmt::format("a <{}>{}", element.kind(), links.empty() ? "" : fmt::format(" of {}", fmt::join(links, ", ")));
+  }
   if (place.link < 0) return "";
   const LinkFrame& link = model.links[place.link];
   if (place.element < 0) return fmt::format("link '{}'", link.name);

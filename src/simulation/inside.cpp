@@ -58,12 +58,7 @@ const std::vector<double>& update_norms_of(const Simulation& simulation) {
 }
 void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values) {
   const auto& s = Inside::of(simulation);
-  const ForceElement& put = *s.model.force_elements.at(element);
-  thread_local std::vector<double> rates;
-  rates.clear();
-  for (const int history : put.functions()) rates.push_back(s.model.histories[history].derivative(s.state.time));
-  const double* memory = s.state.force_memory.data() + memory_begin(s.model.force_elements, element);
-  put.put_out({s.state, s.published.velocities(s.view()).nodes(), memory, rates.data()}, values);
+  put_out(element, s.view(), s.published, values);
 }
 void put_out_touch(const Simulation& simulation, std::size_t pair, std::vector<double>& values) {
   const auto& s = Inside::of(simulation);

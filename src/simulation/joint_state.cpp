@@ -9,6 +9,7 @@
 
 #include "joints/closure_maps.h"
 #include "joints/joint_kinematics.h"
+#include "math/pi.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
 #include "simulation/entry.h"
@@ -116,6 +117,13 @@ class Follower {
       : model_(model), dof_(dof), before_(before), after_(after) {}
 
   void follow() {
+    follow_tree();
+    for (int joint = 0; joint < static_cast<int>(model_.joints.size()); ++joint)
+      if (closes_loop(joint)) close(joint);
+  }
+
+  /// The same, but loops may stay open.
+  void follow_tree() {
     for (int node = 0; node < dof_.node_count; ++node) {
       const int joint = dof_.slave_joint[node];
       if (joint >= 0 && !closes_loop(joint))
@@ -123,8 +131,6 @@ class Follower {
       else
         follow_parent(node);
     }
-    for (int joint = 0; joint < static_cast<int>(model_.joints.size()); ++joint)
-      if (closes_loop(joint)) close(joint);
   }
 
  private:
@@ -234,6 +240,56 @@ ActuatorState carried(const Model& model, const Actuator& actuator, ActuatorStat
   return own;
 }
 
+/// The released motions of a part of the way from one configuration to another.
+std::vector<Released> part_of_way(const std::vector<Released>& from, const std::vector<Released>& to, double part) {
+  std::vector<Released> out = from;
+  for (std::size_t j = 0; j < out.size(); ++j) {
+    out[j].displacement += part * (to[j].displacement - from[j].displacement);
+    out[j].rotation = from[j].rotation.slerp(part, to[j].rotation);
+  }
+  return out;
+}
+
+/// Upper bound of the angle by which two links turn relative to each other between both configurations [rad].
+double turn_between(const Model& model, const std::vector<Released>& from, const std::vector<Released>& to) {
+  double turn = 0;
+  for (std::size_t j = 0; j < from.size(); ++j)
+    turn += from[j].rotation.angularDistance(to[j].rotation) +
+            model.joints[j].rotation.norm() * std::abs(to[j].displacement[0] - from[j].displacement[0]);
+  return turn;
+}
+
+/// Continues the memories of force elements along the way between both configurations, in small parts, so that drums
+/// wind up whole turns. `out`: on input with the memories of elements that begin anew at `after`.
+void carry_memories(const Model& model, const DegreesOfFreedom& dof, const State& state, const Motion& before,
+                    const Motion& after, State& out) {
+  const int parts = 1 + static_cast<int>(turn_between(model, before.released, after.released) / (0.5 * kPi));
+  std::vector<double> memory = state.force_memory;
+  State on_way = out;
+  Motion now = before;
+  for (int i = 1; i <= parts; ++i) {
+    if (i < parts) {
+      const Motion last = now;
+      now.released = part_of_way(before.released, after.released, static_cast<double>(i) / parts);
+      Follower(model, dof, last, now).follow_tree();
+    } else {
+      now = after;
+    }
+    for (std::size_t n = 0; n < now.poses.size(); ++n) {
+      on_way.nodes[n].position = now.poses[n].position;
+      on_way.nodes[n].orientation = now.poses[n].orientation;
+    }
+    on_way.force_memory = out.force_memory;
+    std::size_t begin = 0;
+    for (const auto& element : model.force_elements) {
+      element->carry(*element, memory.data() + begin, on_way, on_way.force_memory.data() + begin);
+      begin += element->memory_size();
+    }
+    memory = on_way.force_memory;
+  }
+  out.force_memory = memory;
+}
+
 }  // namespace
 
 State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const State& state,
@@ -257,6 +313,7 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   placed.initial_velocity = after.velocities;
   placed.initial_origin = state.origin;
   State out = initial_state(placed, state.time);
+  carry_memories(model, dof, state, before, after, out);
   out.steps = state.steps;
   out.left_lines = state.left_lines;
   out.strain_rates = state.strain_rates;

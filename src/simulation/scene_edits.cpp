@@ -27,16 +27,23 @@ void append(Things& things, const Things& others) {
   things.insert(things.end(), others.begin(), others.end());
 }
 
+const std::string& name_of(const std::shared_ptr<const ForceElementDescription>& element) {
+  return element->name;
+}
+template <class Thing>
+const std::string& name_of(const Thing& thing) {
+  return thing.name;
+}
+
 /// @throws std::invalid_argument if a name is in both lists
 template <class Things>
 void require_other_names(const Things& things, const Things& others, const char* what) {
   std::set<std::string> names;
-  for (const auto& thing : things) names.insert(thing.name);
+  for (const auto& thing : things) names.insert(name_of(thing));
   for (const auto& other : others)
-    if (names.count(other.name) > 0)
-      throw std::invalid_argument(
-          fmt::format("there is a {} '{}' already: give the names of the model a prefix, or take that one away first",
-                      what, other.name));
+    if (const std::string& name = name_of(other); !name.empty() && names.count(name) > 0)
+      throw std::invalid_argument(fmt::format(
+          "there is a {} '{}' already: give the names of the model a prefix, or take that one away first", what, name));
 }
 
 }  // namespace
@@ -115,6 +122,15 @@ void take_away(SceneDescription& scene, const std::string& link) {
     if (pin.is_hidden && links.count(pin.child) > 0)
       links.merge(branch_of(scene, joint_above(std::as_const(scene), pin.parent)->parent));
   const auto goes = [&](const std::string& name) { return links.count(name) > 0; };
+  const auto is_at_gone = [&](const std::vector<LinkPoint>& points) {
+    return std::any_of(points.begin(), points.end(), [&](const LinkPoint& point) { return goes(point.link); });
+  };
+  for (const auto& element : scene.force_elements) {  // a line takes its winches along
+    const std::vector<LinkPoint> points = element->points();
+    if (!is_at_gone(points)) continue;
+    for (const LinkPoint& point : points)
+      if (point.attribute == kReel) links.insert(point.link);
+  }
   const auto is_gone = [&](const JointDescription& joint) { return goes(joint.child) || goes(joint.parent); };
   std::set<std::string> joints, coordinates;
   for (const auto* list : {&scene.joints, &scene.loop_joints})
@@ -154,10 +170,14 @@ void take_away(SceneDescription& scene, const std::string& link) {
     drop_if(sensor.group, goes);
     if (is_of_group && sensor.group.empty()) sensor.link = link;  // so that the sensor is removed, too
   }
-  drop_if(scene.sensors, [&](const Sensor& sensor) { return goes(sensor.link) || joints.count(sensor.joint) > 0; });
-  drop_if(scene.force_elements, [&](const auto& element) {
-    const std::vector<LinkPoint> points = element->points();
-    return std::any_of(points.begin(), points.end(), of_link);
+  const auto is_element_gone = [&](const auto& element) { return is_at_gone(element->points()); };
+  std::set<std::string> tendons{""};
+  for (const auto& element : scene.force_elements)
+    if (is_element_gone(element)) tendons.insert(element->name);
+  drop_if(scene.force_elements, is_element_gone);
+  drop_if(scene.sensors, [&](const Sensor& sensor) {
+    const bool is_of_gone_tendon = sensor.kind == SensorKind::Tendon && tendons.count(sensor.tendon) > 0;
+    return is_of_gone_tendon || goes(sensor.link) || joints.count(sensor.joint) > 0;
   });
   const auto of_pair = [&](const ContactPair& pair) { return goes(pair.first) || goes(pair.second); };
   drop_if(scene.contacts, of_pair);
@@ -167,8 +187,6 @@ void take_away(SceneDescription& scene, const std::string& link) {
 
 void rename(SceneDescription& scene, const std::string& prefix) {
   if (prefix.empty()) return;
-  if (!scene.force_elements.empty())
-    throw std::invalid_argument("a model with springs or tendons between points of links cannot have a prefix");
   std::set<std::string> grounds;
   for (const GroundDescription& ground : scene.grounds) grounds.insert(ground.name);
   const auto put = [&](std::string& name) {
@@ -187,6 +205,14 @@ void rename(SceneDescription& scene, const std::string& prefix) {
     cylinder.name = prefix + cylinder.name;
     put(cylinder.from), put(cylinder.to);
   }
+  for (auto& element : scene.force_elements) {
+    auto renamed = element->with_links([&](std::string link) {
+      put(link);
+      return LinkChange{link, Pose()};
+    });
+    if (!renamed->name.empty()) renamed->name = prefix + renamed->name;
+    element = std::move(renamed);
+  }
   const auto put_coordinates = [&](auto& things) {
     for (auto& thing : things) thing.coordinate = prefix + thing.coordinate;
   };
@@ -201,6 +227,7 @@ void rename(SceneDescription& scene, const std::string& prefix) {
   for (Sensor& sensor : scene.sensors) {
     sensor.name = prefix + sensor.name;
     if (!sensor.joint.empty()) sensor.joint = prefix + sensor.joint;
+    if (!sensor.tendon.empty()) sensor.tendon = prefix + sensor.tendon;
     for (std::string& member : sensor.group) put(member);
   }
   for (ContactDescription& contact : scene.contacts) put(contact.first), put(contact.second);
@@ -223,6 +250,7 @@ void merge(SceneDescription& scene, const SceneDescription& other) {
   require_other_names(scene.probes, other.probes, "probe");
   require_other_names(scene.sensors, other.sensors, "sensor");
   require_other_names(scene.grounds, other.grounds, "ground");
+  require_other_names(scene.force_elements, other.force_elements, "spring or tendon");
   append(scene.links, links);
   append(scene.joints, other.joints);
   append(scene.loop_joints, other.loop_joints);

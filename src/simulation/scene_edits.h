@@ -37,7 +37,6 @@ void keep_border(SceneDescription& scene, const std::string& link, const Vector3
 void take_away(SceneDescription& scene, const std::string& link);
 
 /// Puts `prefix` before all names in a scene, except for those of the root link and of grounds.
-/// @throws std::invalid_argument if the scene has force elements, whose names cannot be changed.
 void rename(SceneDescription& scene, const std::string& prefix);
 /// Adds another scene. The two root links become one.
 /// @throws std::invalid_argument if both scenes use the same name for something else.

@@ -223,10 +223,11 @@ class SceneParts {
   }
   void add(const scene::PrescribedMotion& motion) { all("coordinate", motion.coordinate, "position", motion.position); }
   void add(const scene::Sensor& sensor) {
-    const auto& [name, kind, link, joint, group, at, rate, noise, bias, seed, location] = sensor;
+    const auto& [name, kind, link, joint, group, at, rate, noise, bias, seed, location, tendon] = sensor;
     all("name", name, "kind", kind, "link", link, "at", at, "rate", rate, "noise", noise, "bias", bias, "seed", seed);
     if (!joint.empty()) all("joint", joint);
     if (!group.empty()) all("group", group);
+    if (!tendon.empty()) all("tendon", tendon);
   }
   void add(const std::shared_ptr<const scene::ForceElementDescription>& element) {
     const std::vector<scene::LinkPoint> points = element->points();

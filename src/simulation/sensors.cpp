@@ -118,6 +118,13 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
       return set(touching_wrench(sensor, place, view, motion));
     case SensorKind::Imu:
       return set(measured_motion(place, view, motion));
+    case SensorKind::Tendon: {
+      thread_local std::vector<double> outputs;  // the length, the tension at the first guide, ...
+      outputs.clear();
+      put_out(place.force_element, view, motion, outputs);
+      for (int i = 0; i < 2; ++i) sample.values[i] = outputs[i] + errors[i];
+      return;
+    }
     case SensorKind::Pose:
       return set_pose(pose_in_world(view.model, view.state, place.point), errors, sample);
   }

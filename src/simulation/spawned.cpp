@@ -39,7 +39,8 @@ void take_floating_root(scene::SceneDescription& model) {
   model.root_link = root;
 }
 
-/// Moves the joints on the world, and the points of cylinders there, by the pose at which the model is placed.
+/// Moves the joints on the world, and the points of force elements and cylinders there, by the pose at which the model
+/// is placed.
 void place_on_world(scene::SceneDescription& model, const Spawn& where) {
   if (!where.linear.isZero(0) || !where.angular.isZero(0))
     throw std::invalid_argument(
@@ -50,18 +51,38 @@ void place_on_world(scene::SceneDescription& model, const Spawn& where) {
     if (loop.parent == model.root_link) loop.origin = where.pose * loop.origin;
     if (loop.child == model.root_link) loop.child_origin = where.pose * loop.child_origin;
   }
+  for (auto& element : model.force_elements)
+    element = element->with_links([&](const std::string& link) {
+      return scene::LinkChange{link, link == model.root_link ? where.pose : Pose()};
+    });
   for (scene::CylinderDescription& cylinder : model.cylinders) {
     if (cylinder.from == model.root_link) cylinder.from_at = where.pose * cylinder.from_at;
     if (cylinder.to == model.root_link) cylinder.to_at = where.pose * cylinder.to_at;
   }
 }
 
-/// Calls `visit(name)` for each link's name in the model's joints and cylinders.
+/// Calls `visit(name)` for each link's name in the model's joints, force elements and cylinders.
 template <class Visit>
 void for_each_end(scene::SceneDescription& model, const Visit& visit) {
   for (auto* joints : {&model.joints, &model.loop_joints})
     for (scene::JointDescription& joint : *joints) visit(joint.parent), visit(joint.child);
   for (scene::CylinderDescription& cylinder : model.cylinders) visit(cylinder.from), visit(cylinder.to);
+  for (auto& element : model.force_elements)
+    element = element->with_links([&](std::string link) {
+      visit(link);
+      return scene::LinkChange{link, Pose()};
+    });
+}
+
+/// Lets the reels of winches travel along the world's x axis, wherever the model is.
+void put_reels_on_world(scene::SceneDescription& model, const std::string& world) {
+  for (const auto& element : model.force_elements)
+    for (const scene::LinkPoint& point : element->points())
+      if (point.attribute == scene::kReel) {
+        scene::JointDescription& travel = *joint_above(model, point.link);
+        travel.parent = world;
+        travel.origin = Pose();
+      }
 }
 
 void add_floating_joint(scene::SceneDescription& model, const std::string& world, const Spawn& where) {
@@ -103,6 +124,7 @@ void spawn(Simulation& simulation, const scene::SceneDescription& model, const S
     added.root_link = where.prefix + own;
     add_floating_joint(added, scene.root_link, placed);
   }
+  put_reels_on_world(added, scene.root_link);
   merge(scene, added);
   go_on_with(simulation, state_of(simulation), scene, {}, EnergyChange::Work);
 }

@@ -60,7 +60,7 @@ TEST(TendonReader, AWinchIsAJointThatPaysOut) {
                                           "<winch name='hoist' tendon='rope'><limit lower='-1' upper='2' effort='9'"
                                           " velocity='1'/><drive rotor_inertia='0.2'/></winch>"));
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
-  EXPECT_EQ(tendon_of(result).winches.at(0).link, "hoist_reel");
+  EXPECT_EQ(tendon_of(result).reels.at(0), "hoist_reel");
   const JointDescription& joint = result.scene->joints.at(1);
   EXPECT_EQ(joint.name, "hoist");
   EXPECT_EQ(joint.kind, JointKind::Prismatic);

@@ -64,6 +64,12 @@ class StrutDescription : public scene::ForceElementDescription {
   const char* kind() const override { return "strut"; }
   std::vector<scene::LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override { return {law.linear, law.cubic, law.push}; }
+  std::shared_ptr<ForceElementDescription> with_links(const scene::LinkChanges& change) const override {
+    auto out = std::make_shared<StrutDescription>(*this);
+    out->from = change(from).name, out->from_at = change(from).frame * from_at;
+    out->to = change(to).name, out->to_at = change(to).frame * to_at;
+    return out;
+  }
   std::shared_ptr<const ForceElement> place(const scene::ForcePlacement& placement) const override {
     return std::make_shared<Strut>(name, placement.places[0], placement.places[1], law);
   }

@@ -41,7 +41,8 @@ struct StepResult {
     int coordinate = -1;                 ///< index into Simulation::coordinate_names()
     int loop = -1;                       ///< index among the loops that joints without coordinates close
     Vector3 position = Vector3::Zero();  ///< world axes [m]
-    bool is_known() const { return link >= 0 || coordinate >= 0 || loop >= 0; }
+    int force_element = -1;              ///< index among the springs, tendons and contacts
+    bool is_known() const { return link >= 0 || coordinate >= 0 || loop >= 0 || force_element >= 0; }
   };
 
   /// Where a step failed and what was tried; Simulation::explain() puts this into words.

@@ -1,6 +1,7 @@
 #pragma once
 /// Base class of the elements of a scene that act between points of links, such as springs.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ struct NodePoint;
 struct NodePose;
 
 namespace scene {
+
+/// The attribute of a LinkPoint that is the reel of a winch.
+constexpr const char* kReel = "winch";
 
 /// A point of a link, as given by an attribute of an XML element.
 struct LinkPoint {
@@ -33,6 +37,13 @@ struct ForcePlacement {
   Vector3 origin = Vector3::Zero();              ///< of positions, in the world [m]
 };
 
+/// What becomes of a link when its scene becomes a part of another one.
+struct LinkChange {
+  std::string name;
+  Pose frame;  ///< of its former frame in the new one
+};
+using LinkChanges = std::function<LinkChange(const std::string& link)>;
+
 /// An XML element of the scene that acts between points of links. Copies of a scene share it, so it must not change
 /// once it is part of a scene.
 class ForceElementDescription {
@@ -46,6 +57,8 @@ class ForceElementDescription {
   virtual std::vector<TimeFunction> functions() const { return {}; }
   /// All parameters except points and functions. Two elements of one kind with the same numbers behave alike.
   virtual std::vector<double> numbers() const = 0;
+  /// Returns a copy that acts between the same points after links have changed.
+  virtual std::shared_ptr<ForceElementDescription> with_links(const LinkChanges& change) const = 0;
   /// Creates the force element of the model.
   virtual std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const = 0;
 

@@ -18,6 +18,7 @@ class PointSpring : public ForceElementDescription {
   const char* kind() const override { return "spring"; }
   std::vector<LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override;
+  std::shared_ptr<ForceElementDescription> with_links(const LinkChanges& change) const override;
   std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const override;
 };
 

@@ -290,7 +290,8 @@ enum class SensorKind {
   Strain,        ///< of a flexible link: axial strain of the fibre through the sensor's position
   Imu,           ///< angular velocity, and acceleration minus gravity, in axes that turn with the sensor
   Pose,          ///< of the sensor in the world
-  Contact        ///< contact force and moment on the link or on `group`, about the sensor, in link axes
+  Contact,       ///< contact force and moment on the link or on `group`, about the sensor, in link axes
+  Tendon         ///< length of a tendon, and its tension at the first guide
 };
 
 /// One number that a sensor measures: the last part of its column's name, and its unit.
@@ -308,7 +309,7 @@ std::size_t sensor_error_count(SensorKind kind);
 struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::Pose;
-  std::string link;
+  std::string link;   ///< Tendon: the link of the first guide
   std::string joint;  ///< Wrench, Reaction: name of a loop joint of the link; empty: the tree joint that carries it
   std::vector<std::string> group = {};  ///< Contact: measure the forces on these links and grounds; empty: on the link
   Vector3 at = Vector3::Zero();         ///< in the undeformed link frame [m]
@@ -317,6 +318,7 @@ struct Sensor {
   std::vector<double> noise, bias;  ///< standard deviation and mean of each error; empty: 0; one value: for all
   int seed = 0;                     ///< of the noise, in addition to the sensor's name
   SourceLocation location = {};
+  std::string tendon = {};  ///< Tendon: its name
 };
 
 /// A named number that expressions of the scene use. The rest of this description was computed with its value.

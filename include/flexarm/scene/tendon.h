@@ -25,13 +25,10 @@ class TendonDescription : public ForceElementDescription {
     double wrap = kQuarterTurn;       ///< of a pulley without grip: at the start the angle of contact is the possible
                                       ///< one that is nearest to this [rad]
   };
-  /// A coordinate that pays the line out at its first guide: the position of a link along the world's x axis.
-  struct Winch {
-    std::string name, link;
-  };
 
   std::vector<Guide> guides;
-  std::vector<Winch> winches;
+  std::vector<std::string> reels;                ///< links of winches: their travel along the world's x axis pays the
+                                                 ///< line out at its first guide
   double stiffness = 0;                          ///< EA [N]
   double damping = 0;                            ///< [N s/m]
   std::optional<TimeFunction> rest_length = {};  ///< [m]; empty: its initial length
@@ -41,6 +38,7 @@ class TendonDescription : public ForceElementDescription {
   std::vector<LinkPoint> points() const override;
   std::vector<TimeFunction> functions() const override;
   std::vector<double> numbers() const override;
+  std::shared_ptr<ForceElementDescription> with_links(const LinkChanges& change) const override;
   std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const override;
 };
 

@@ -1,0 +1,226 @@
+// Tests that lines keep what they have wound up and slipped when a program changes the mechanism in a run.
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "flexarm/model/model_error.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/payloads.h"
+#include "flexarm/simulation/result_columns.h"
+#include "flexarm/simulation/simulation.h"
+#include "math/pi.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kRadius = 0.1;  // of drums [m]
+
+scene::SceneDescription line_scene(const std::string& parts, const std::string& scheme = "em") {
+  const scene::ReadResult read = scene::read_scene_text(
+      fmt::format(R"(<robot name="r"> <link name="world"/> {} <simulation> <gravity xyz="0 0 -9.81"/>
+                       <integrator scheme="{}" step="1e-3" tolerance="1e-12"/> </simulation> </robot>)",
+                  parts, scheme),
+      "lines.urdf");
+  for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
+  return read.scene.value();
+}
+
+const char* const kInertial = R"(<inertial> <mass value="{}"/>
+  <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/> </inertial>)";
+
+std::string body_with_mass(const std::string& name, double mass) {
+  return fmt::format("<link name=\"{}\">", name) + fmt::format(kInertial, mass) + "</link>";
+}
+
+std::string free_body(const std::string& name, double mass, const std::string& at) {
+  return fmt::format(R"(<joint name="{0}_flight" type="floating"> <parent link="world"/> <child link="{0}"/>
+                          <origin xyz="{1}"/> </joint>)",
+                     name, at) +
+         body_with_mass(name, mass);
+}
+
+/// A drum that turns about the y axis at the world's origin. Its line leaves it downwards at x = 0.1 m.
+std::string drum() {
+  return R"(<joint name="drum" type="continuous"> <parent link="world"/> <child link="drum"/> <axis xyz="0 1 0"/> </joint>)" +
+         body_with_mass("drum", 2);
+}
+const char* const kOnDrum = R"(<pulley link="drum" axis="0 1 0" radius="0.1" grips="true"/>)";
+
+double value_of(const Simulation& simulation, const std::string& column) {
+  return ResultColumns(simulation, ResultColumns::Solver::Without, {column}).row(simulation, {}).back();
+}
+
+double line_account(const Simulation& simulation) {
+  const Energies now = simulation.energies();
+  return now.total() + now.dissipated - now.work;
+}
+
+void go_on(Simulation& simulation, int steps) {
+  for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation.step().converged) << n;
+}
+
+/// A line between the drum and a point of the world 2 m below it.
+const std::string kHeldLine =
+    drum() + fmt::format(R"(<tendon name="line" ea="10"> {} <via link="world" at="0.1 0 -2"/> </tendon>)", kOnDrum);
+
+}  // namespace
+
+TEST(TendonChanges, DrumsWindUpWholeTurnsWhenTheyAreSet) {
+  Simulation s(line_scene(kHeldLine));
+  double start = line_account(s);
+  for (const double angle : {-6 * kPi, 40.0, 0.0, -0.6 * kPi, 0.6 * kPi, -6 * kPi}) {
+    s.set_joint_state({{0, angle, 0.0}});
+    const double rest = 2 + kRadius * angle;
+    EXPECT_NEAR(value_of(s, "tendon/line/tension"), rest < 2 ? 10 * (2 - rest) / rest : 0, 1e-10) << angle;
+    EXPECT_NEAR(value_of(s, "tendon/line/length"), 2, 1e-14);
+  }
+  EXPECT_NEAR(line_account(s), start, 1e-10);  // what is set from outside counts as work
+  go_on(s, 100);
+  EXPECT_NEAR(line_account(s), start, 1e-9);
+}
+
+TEST(TendonChanges, WhatHasSlippedStays) {
+  const std::string parts = free_body("ball", 1, "1 0 -1") + R"(<tendon name="line" ea="2000">
+      <via link="world" at="-1 0 0"/> <via link="world" friction="0.3"/> <via link="ball"/> </tendon>)";
+  Simulation s(line_scene(parts));
+  go_on(s, 700);
+  const double first = value_of(s, "tendon/line/tension"), last = value_of(s, "tendon/line/last_tension");
+  ASSERT_GT(std::abs(last - first), 0.01 * last);
+  ASSERT_GT(s.energies().dissipated, 1e-3);  // it has slipped
+  const double strain = s.energies().strain;
+  const auto expect_same = [&](const Simulation& other) {
+    EXPECT_NEAR(value_of(other, "tendon/line/tension"), first, 1e-9 * last);
+    EXPECT_NEAR(value_of(other, "tendon/line/last_tension"), last, 1e-9 * last);
+    EXPECT_NEAR(other.energies().strain, strain, 1e-9 * strain);
+  };
+  Simulation other(line_scene(parts, "newmark"));
+  other.take_over(s);
+  expect_same(other);
+  s.set_joint_state({});
+  expect_same(s);
+}
+
+TEST(TendonChanges, APayloadThatComesAndGoesLeavesTheLine) {
+  Simulation s(line_scene(
+      drum() + free_body("hook", 1, "0.1 0 -2") + free_body("load", 3, "0.1 0.2 -6") +
+      fmt::format(R"(<tendon name="line" ea="2e4" damping="20"> {} <via link="hook"/> </tendon>)", kOnDrum)));
+  go_on(s, 900);  // the drum is turned by the falling hook, several times
+  ASSERT_GT(std::abs(s.position(0)), 10.0);
+  const double start = line_account(s), tension = value_of(s, "tendon/line/tension");
+  ASSERT_GT(tension, 0.5);
+  const auto expect_continued = [&](double expected) {
+    EXPECT_NEAR(value_of(s, "tendon/line/length"), 2 + kRadius * s.position(0), 0.01);  // but for its stretch
+    EXPECT_NEAR(value_of(s, "tendon/line/tension"), expected, 1e-6 * expected);
+    EXPECT_NEAR(line_account(s), start, 1e-8);
+  };
+  const double length = value_of(s, "tendon/line/length");
+  attach(s, "load", "hook");
+  EXPECT_NEAR(value_of(s, "tendon/line/length"), length, 1e-12);
+  // The damper's part has changed, since the hook's velocity has.
+  go_on(s, 400);
+  const double before = value_of(s, "tendon/line/tension");
+  detach(s, "load");
+  expect_continued(before);
+  go_on(s, 100);
+  EXPECT_NEAR(line_account(s), start, 1e-8);
+}
+
+// The line is as long as at the start of the scene, when the hook was held 2 m below the carriage's drum.
+TEST(TendonChanges, AHookThatIsReleasedDoesNotMeasureItsLineAnew) {
+  Simulation s(line_scene(R"(<joint name="slide" type="prismatic"> <parent link="world"/> <child link="carriage"/>
+                               <axis xyz="0 0 1"/> <limit lower="-1" upper="1" effort="0" velocity="0"/> </joint>)" +
+                          body_with_mass("carriage", 1) +
+                          R"(<joint name="grip" type="fixed"> <parent link="carriage"/> <child link="hook"/>
+                               <origin xyz="0 0 -2"/> </joint>)" +
+                          body_with_mass("hook", 1) +
+                          R"(<tendon name="line" ea="400"> <via link="world"/> <via link="hook"/> </tendon>)"));
+  s.set_joint_state({{0, -0.3, 0.0}});
+  EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
+  detach(s, "hook");
+  EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
+  const double start = line_account(s);
+  go_on(s, 300);
+  EXPECT_NEAR(line_account(s), start, 1e-9);
+}
+
+TEST(TendonChanges, AFailureNamesTheLine) {
+  const auto explained = [](const std::string& tendon) {
+    Simulation s(line_scene(free_body("ball", 1, "0 0 -1") + tendon));
+    StepResult result;
+    for (int n = 0; n < 1000 && (n == 0 || result.converged); ++n) result = s.step();
+    EXPECT_EQ(result.reason, StepResult::Reason::NotFinite);
+    return s.explain(result);
+  };
+  // Nothing is left of the line; its function is not finite; the ball falls into the rim of a pulley below it.
+  for (
+      const char* tendon :
+      {R"(<tendon name="line" ea="1" rest_length="0.5-t"> <via link="world"/> <via link="ball"/> </tendon>)",
+       R"(<tendon name="line" ea="1" rest_length="t < 0.01 ? 1 : sqrt(-1) "> <via link="world"/> <via link="ball"/> </tendon>)",
+       R"(<tendon name="line" ea="1"> <via link="world" at="1 0 -1.5"/> <pulley link="world" at="0 0 -1.5" axis="0 1 0"
+             radius="0.2" side="left" friction="0.1"/> <via link="ball"/> </tendon>)"}) {
+    const std::string text = explained(tendon);
+    EXPECT_NE(text.find("not finite: at <tendon> 'line'"), std::string::npos) << text;
+    EXPECT_NE(text.find("guides outside the rims"), std::string::npos) << text;
+  }
+}
+
+TEST(TendonChanges, FrictionHasNoBackwardSteps) {
+  const std::string parts = free_body("ball", 1, "0 0 -1") +
+                            R"(<tendon name="line" ea="1"> <via link="world" at="1 0 0"/>
+                                 <via link="world"{}/> <via link="ball"/> </tendon>)";
+  const auto with = [&](const std::string& friction) {
+    std::string text = parts;
+    return text.replace(text.find("{}"), 2, friction);
+  };
+  EXPECT_NO_THROW(Simulation(line_scene(with(""), "em4")));
+  EXPECT_NO_THROW(Simulation(line_scene(with(" friction=\"0.1\""), "em")));
+  try {
+    Simulation refused(line_scene(with(" friction=\"0.1\""), "em4"));
+    ADD_FAILURE() << "em4 takes friction";
+  } catch (const ModelError& error) {
+    EXPECT_NE(std::string(error.what()).find("scheme 'em4' has no <tendon> with friction"), std::string::npos)
+        << error.what();
+  }
+}
+
+namespace {
+
+/// A pendulum on a rope that a winch takes in, beside a spring and a tendon between it and the world.
+scene::SceneDescription hoisted_pendulum() {
+  scene::SceneDescription out = line_scene(free_body("bob", 1, "0.5 0.2 -1") +
+                                           R"(<tendon name="rope" ea="1e4" damping="5"> <via link="world" at="0 0 0.3"/>
+           <pulley link="world" at="0.1 0 0" axis="0 1 0" radius="0.05" side="left" wrap="1"/> <via link="bob"/> </tendon>
+         <winch name="hoist" tendon="rope"> <drive rotor_inertia="0.5"/> </winch>
+         <spring name="side" from="world" from_at="0 1 -1" to="bob" stiffness="20"/>
+         <tendon name="stay" ea="100"> <via link="world" at="1 1 -1"/> <via link="bob" at="0.01 0 0"/> </tendon>)");
+  return out;
+}
+
+}  // namespace
+
+TEST(TendonChanges, AModelWithLinesIsSpawnedAnywhere) {
+  Simulation alone(hoisted_pendulum());
+  Simulation s(line_scene(free_body("other", 1, "30 0 0")));
+  const Quaternion turn(Eigen::AngleAxisd(2.2, Vector3::UnitZ()));
+  for (const std::string prefix : {"a_", "b_"})
+    spawn(s, hoisted_pendulum(),
+          {{{prefix == "a_" ? 4.0 : -3.0, 1, 2}, turn}, Vector3::Zero(), Vector3::Zero(), prefix});
+  go_on(alone, 300);
+  go_on(s, 300);
+  for (const std::string prefix : {"a_", "b_"}) {
+    for (const std::string name : {"rope", "stay"})
+      EXPECT_NEAR(value_of(s, "tendon/" + prefix + name + "/tension"), value_of(alone, "tendon/" + name + "/tension"),
+                  1e-7)
+          << prefix << name;
+    EXPECT_NEAR(value_of(s, "spring/" + prefix + "side/length"), value_of(alone, "spring/side/length"), 1e-9);
+    EXPECT_NEAR(value_of(s, "joint/" + prefix + "hoist/position"), value_of(alone, "joint/hoist/position"), 1e-9);
+  }
+  remove(s, "a_bob");  // its lines and their winch go with it
+  EXPECT_NEAR(value_of(s, "joint/b_hoist/position"), value_of(alone, "joint/hoist/position"), 1e-9);
+  for (const std::string& name : s.coordinate_names()) EXPECT_NE(name, "a_hoist");
+  go_on(s, 10);
+}
+
+}  // namespace flexarm::test
