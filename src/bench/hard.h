@@ -80,7 +80,7 @@ enum class Verdict {
   Right,
   Warned,      ///< like Wrong, but the run ended with a warning
   Wrong,       ///< completed, but misses its target, exceeds its bound, or creates energy
-  LeftOut,     ///< the scheme does not support <contact>
+  LeftOut,     ///< the scheme does not support <contact> or <tendon>
   Failed,      ///< did not complete
   Diagnosed,   ///< unsound case: was refused, or ended with a reason
   Unnoticed,   ///< unsound case: was completed

@@ -45,6 +45,7 @@ std::vector<HardCase> hard_cases() {
   add_mechanism_cases(cases);
   add_static_cases(cases);
   add_contact_cases(cases);
+  add_line_cases(cases);
   return cases;
 }
 

@@ -70,6 +70,7 @@ void add_slider_cases(std::vector<HardCase>& cases);
 void add_joint_cases(std::vector<HardCase>& cases);
 void add_mechanism_cases(std::vector<HardCase>& cases);
 void add_contact_cases(std::vector<HardCase>& cases);
+void add_line_cases(std::vector<HardCase>& cases);
 void add_static_cases(std::vector<HardCase>& cases);
 
 }  // namespace flexarm::bench

@@ -19,8 +19,6 @@ constexpr double kLargestGain = 0.05, kLargestLoss = 1, kLargestMomentumDefect =
 /// Limit for created energy in contacts: round-off of halved steps, and errors of Newton's method relative to a tiny
 /// body's depth.
 constexpr double kLargestContactGain = 1e-4;
-/// What a scheme without contacts says.
-constexpr const char* kNoContact = "has no <contact>";
 
 void write(HardOutcome::Text& text, const std::string& from) {
   text.fill(0);
@@ -227,9 +225,16 @@ std::string flaw(const HardCase& hard, const HardOutcome& outcome) {
   return "";
 }
 
+/// Whether a scheme refuses a scene because it does not support contacts or tendons.
+bool is_left_out(const HardOutcome& outcome) {
+  const char* reason = outcome.reason.data();
+  return outcome.end == HardOutcome::End::Refused && std::strstr(reason, "scheme") &&
+         (std::strstr(reason, "has no <") || std::strstr(reason, "have no <"));
+}
+
 Verdict verdict(const HardCase& hard, const HardOutcome& outcome) {
   const bool is_complete = outcome.end == HardOutcome::End::Completed;
-  if (hard.touches && std::strstr(outcome.reason.data(), kNoContact)) return Verdict::LeftOut;
+  if (is_left_out(outcome)) return Verdict::LeftOut;
   if (hard.is_sound)
     return !is_complete                  ? Verdict::Failed
            : flaw(hard, outcome).empty() ? Verdict::Right

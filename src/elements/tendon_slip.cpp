@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kMostRounds = 50, kSweeps = 4, kMostIterations = 12, kMostHalvings = 200;
+constexpr int kMostRounds = 2, kSweeps = 4, kMostIterations = 12, kMostHalvings = 200;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -20,6 +20,11 @@ TendonStep TendonPartStep::with(const TendonLaw& law, double slip) const {
 }
 
 TendonStep TendonPartStep::at_last(const TendonLaw& law, double slip) const {
+  if (!(end.rest + slip > 0)) {  // nothing is left of the part
+    TendonStep none;
+    none.tension = std::numeric_limits<double>::infinity();
+    return none;
+  }
   if (at_end) return with(law, slip);
   const double slope = duration > 0 ? 1 / duration : 0, before = std::max(begin.length - begin.rest, 0.0);
   const TendonLengths last{end.length, end.rest + slip};
@@ -27,12 +32,26 @@ TendonStep TendonPartStep::at_last(const TendonLaw& law, double slip) const {
   return law.at_end(last, slope * change, slope, change);
 }
 
+double TendonPartStep::rest_at(const TendonLaw& law, double tension) const {
+  double slope = rate_slope, here = rate;
+  if (!at_end) {
+    slope = duration > 0 ? 1 / duration : 0;
+    here = slope * (end.length - end.rest - std::max(begin.length - begin.rest, 0.0));
+  }
+  // EA (L/x - 1) + damping (here + slope (L0 - x)) = tension is quadratic in x.
+  const double square = law.damping * slope, pull = law.stiffness * end.length;
+  const double middle = tension + law.stiffness - law.damping * (here + slope * end.rest);
+  const double root = std::sqrt(middle * middle + 4 * square * pull);
+  const double rest = middle > 0 ? 2 * pull / (middle + root) : (root - middle) / (2 * square);
+  return std::min(rest, end.length);
+}
+
 void TendonSlip::evaluate() {
   double largest = 0, rate = 0, length = 0;
   for (int p = 0; p < static_cast<int>(parts_->size()); ++p) {
     evaluate(p);
     const TendonPartStep& part = (*parts_)[p];
-    largest = std::max(largest, ends_[p].tension);
+    if (std::isfinite(ends_[p].tension)) largest = std::max(largest, ends_[p].tension);
     length = std::max({length, part.end.length, part.end.rest});
     rate = part.at_end ? std::abs(part.rate_slope) : part.duration > 0 ? 1 / part.duration : 0;
   }
@@ -97,9 +116,10 @@ bool TendonSlip::iterate() {
     factors_.compute(slopes_);
     update_ = factors_.solve(right_);
     if (!update_.allFinite()) return false;
-    slips_ += update_;
-    for (int i = 0; i < slips_.size(); ++i)
+    for (int i = 0; i < slips_.size(); ++i) {
+      if (ways_[i] != 0) slips_[i] += update_[i];  // round-off must not move those that stick
       if (ways_[i] * slips_[i] < 0) return false;
+    }
     evaluate();
   }
   return false;
@@ -148,7 +168,9 @@ bool TendonSlip::find_slips() {
     slips_ = settled_;
     evaluate();
   }
-  return false;
+  chain_.solve(*law_, *parts_, ratios_, slips_);
+  evaluate();
+  return is_solved() || iterate();
 }
 
 void TendonSlip::set_tension(int parts, double tension) {

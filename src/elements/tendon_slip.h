@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include "elements/slip_chain.h"
 #include "elements/tendon_law.h"
 
 namespace flexarm {
@@ -22,6 +23,8 @@ struct TendonPartStep {
   TendonStep with(const TendonLaw& law, double slip) const;
   /// The same at the end of the step.
   TendonStep at_last(const TendonLaw& law, double slip) const;
+  /// The rest length with which the tension of at_last() is `tension` [m]; with which the part is just slack, if 0.
+  double rest_at(const TendonLaw& law, double tension) const;
 };
 
 /// Parts of a line, one after the other, with a guide between each two, over which the line may slip. Tensions at the
@@ -65,7 +68,8 @@ class TendonSlip {
   const std::vector<TendonPartStep>* parts_ = nullptr;  // during solve()
   double round_off_ = 0;                                // of tensions [N]
   std::vector<TendonStep> steps_, ends_;                // per part, over the step and at its end
-  std::vector<int> ways_;                               // per guide: 1 and -1: it slips; 0: it sticks
+  SlipChain chain_;
+  std::vector<int> ways_;  // per guide: 1 and -1: it slips; 0: it sticks
   std::vector<double> ratios_;
   Eigen::VectorXd slips_, settled_, right_, update_;
   Eigen::MatrixXd slopes_, by_length_, by_rest_, solution_;

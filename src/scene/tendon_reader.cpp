@@ -12,6 +12,9 @@
 namespace flexarm::scene {
 namespace {
 
+/// A shorter line counts as one without length [m]. The pieces between coinciding guides are 1e-8 m long.
+constexpr double kShortest = 1e-7;
+
 flexarm::TendonGuide placed(const TendonDescription::Guide& guide, const NodePoint& place) {
   flexarm::TendonGuide out;
   out.place.node = place.node;
@@ -83,7 +86,7 @@ std::shared_ptr<const ForceElement> TendonDescription::place(const ForcePlacemen
         fmt::format("{}:{}: <tendon> '{}': a guide is inside the rim of the pulley next to it, or two "
                     "pulleys overlap",
                     location.file, location.line, name));
-  else if (length == 0)
+  else if (length < kShortest)
     throw ModelError(fmt::format("{}:{}: <tendon> '{}': its length is 0", location.file, location.line, name));
   return element;
 }
