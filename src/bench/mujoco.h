@@ -45,6 +45,11 @@ struct PeerRun {
 std::vector<PeerRun> mujoco_runs(PeerProblem problem, const std::vector<double>& times, bool quick,
                                  const std::function<void()>& advance_progress);
 
+/// The same for the rod with three tendons of config/speed/tendon_rod.urdf: 12 to 48 rigid segments on ball joints,
+/// with spatial tendons through sites, and steps from 2e-3 s to 2e-5 s.
+std::vector<PeerRun> mujoco_tendon_runs(const std::vector<double>& times, bool quick,
+                                        const std::function<void()>& advance_progress);
+
 /// Runs MuJoCo with all its integrators, and steps from 2e-2 s to 1e-5 s. The scene must come from a file with rigid
 /// links, joints of one coordinate, and gravity as the only load. The first probe is recorded. `times`: multiples of
 /// 2e-2 s. The rest is as above.

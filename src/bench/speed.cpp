@@ -100,6 +100,7 @@ std::vector<PeerRun> peer_runs(const std::string& folder, const SpeedProblem& pr
     advance();
     return runs;
   }
+  if (problem.name == "tendon_rod") return mujoco_tendon_runs(times, quick, advance);
   const std::map<std::string, PeerProblem> known = {{"spin_up", PeerProblem::SpinUp},
                                                     {"double_pendulum", PeerProblem::DoublePendulum}};
   const auto found = known.find(problem.name);

@@ -125,6 +125,19 @@ SpeedProblem sliding_mass() {
   return p;
 }
 
+SpeedProblem tendon_rod() {
+  SpeedProblem p{
+      "tendon_rod", "Rod with three tendons", "speed/tendon_rod.urdf", "", "tip", 2, 0.04, {"em4", 3, 24, 0.001}, {}};
+  add_em(p, {{12, 1}, {12, 2}}, {2, 4, 8, 16, 32});
+  add_product(p, {"edmc2", "newmark"}, {{12, 1}, {12, 2}}, {4, 8, 16, 32}, {kTight, kLoosest});
+  add_product(p, {"em4"}, {{12, 1}, {12, 2}}, {4, 8, 16}, {kTight, kLoosest});
+  p.note =
+      "Three tendons of given tension run through 13 points each. In MuJoCo the rod is a chain of rigid segments on "
+      "ball "
+      "joints, and the tendons run through sites.";
+  return p;
+}
+
 SpeedProblem six_joint_arm() {
   SpeedProblem p{"six_joint_arm",
                  "Free swing of a rigid six-joint arm",
@@ -147,7 +160,7 @@ SpeedProblem six_joint_arm() {
 
 std::vector<SpeedProblem> speed_problems() {
   return {spin_up(),  right_angle_cantilever(), flying_spaghetti(), double_pendulum(),
-          demo_arm(), sliding_mass(),           six_joint_arm()};
+          demo_arm(), sliding_mass(),           tendon_rod(),       six_joint_arm()};
 }
 
 std::vector<SpeedTarget> speed_targets() {
@@ -170,6 +183,7 @@ std::vector<RealTimeScene> real_time_scenes() {
        Unit::TimesRealTime, 6},
       {"sliding arm at 1 kHz", "examples/sliding_arm.urdf", "", "load", "auto", 2, Unit::TimesRealTime, 15},
       {"demo arm at 1 kHz", "demo_arm.urdf", "demo_commands.yaml", "payload", "auto", 10, Unit::TimesRealTime, 40},
+      {"tower crane at 1 kHz", "examples/tower_crane.urdf", "", "load", "auto", 40, Unit::TimesRealTime, 50},
       {"rigid four-bar at 1 kHz", "speed/rigid_four_bar.urdf", "", "middle", "auto", 2, Unit::MicrosecondsPerStep, 8},
       {"rigid six-joint arm at 1 kHz", "speed/six_joint_arm.urdf", "", "tip", "auto", 1,
        Unit::MicrosecondsPerTwoIterations, 6}};
