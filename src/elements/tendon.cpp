@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -15,8 +17,9 @@ namespace {
 /// The nodes of a plan, each once.
 std::vector<int> nodes_of(const TendonPlan& plan) {
   std::vector<int> nodes;
+  std::unordered_set<int> known{-1};
   const auto add = [&](int node) {
-    if (node >= 0 && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+    if (known.insert(node).second) nodes.push_back(node);
   };
   for (const TendonGuide& guide : plan.guides) add(guide.place.node);
   for (const TendonWinch& winch : plan.winches) add(winch.node);
@@ -35,11 +38,17 @@ double rim(const GuidePlace& guide) {
 
 Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, const std::vector<NodePose>& poses)
     : ForceElement(std::move(name), nodes_of(plan), std::move(functions)), plan_(std::move(plan)) {
+  std::unordered_map<int, int> places{{-1, -1}};
+  for (const int node : reach()) places.emplace(node, static_cast<int>(places.size()) - 1);
+  for (const TendonGuide& guide : plan_.guides) guide_nodes_.push_back(places[guide.place.node]);
+  for (const TendonWinch& winch : plan_.winches) winch_nodes_.push_back(places[winch.node]);
   const int last = static_cast<int>(plan_.guides.size()) - 1;
   for (int i = 1; i < last; ++i) {
-    parts_ += plan_.guides[i].divides() ? 1 : 0;
+    if (plan_.guides[i].divides()) part_ends_.push_back(i);
     may_lift_ = may_lift_ || (plan_.guides[i].place.is_circle() && !plan_.guides[i].divides());
   }
+  parts_ = static_cast<int>(part_ends_.size());
+  part_ends_.push_back(last);
   shares_.assign(parts_, 1.0);
   std::vector<double> numbers(memory_size(), 0.0);
   const NewMemory memory{numbers.data(), parts_};
@@ -65,11 +74,6 @@ Tendon::Scratch& Tendon::scratch() const {
   return Scratch::of(parts_, 6 * reach().size());
 }
 
-int Tendon::local(int node) const {
-  if (node < 0) return -1;
-  return static_cast<int>(std::find(reach().begin(), reach().end(), node) - reach().begin());
-}
-
 Tendon::Neighbours Tendon::neighbours(const Memory& memory, int guide) const {
   Neighbours out{guide - 1, guide + 1};
   while (memory.touched(out.before) == 0) --out.before;
@@ -79,8 +83,8 @@ Tendon::Neighbours Tendon::neighbours(const Memory& memory, int guide) const {
 
 Tendon::Span Tendon::span(int first, int second, int part) const {
   const TendonGuide &from = plan_.guides[first], &to = plan_.guides[second];
-  Span out{{from.place, to.place}, first,     second, part, local(from.place.node),
-           local(to.place.node),   {1, 0, 0}, {},     false};
+  Span out{{from.place, to.place}, first,     second, part, guide_nodes_[first],
+           guide_nodes_[second],   {1, 0, 0}, {},     false};
   (from.divides() ? out.rest.begin : out.length.begin) = from.divides() ? -rim(from.place) : rim(from.place);
   (to.divides() ? out.rest.end : out.length.end) = to.divides() ? rim(to.place) : -rim(to.place);
   out.winds = (from.divides() && from.place.is_circle()) || (to.divides() && to.place.is_circle());
@@ -97,8 +101,7 @@ double Tendon::paid_out(const Poses& poses) const {
 TendonLengths Tendon::lengths(const Poses& poses, const Memory& memory, int part) const {
   TendonLengths out;
   out.rest = shares_[part] * memory.function() - memory.rims_at_start(part) + (part == 0 ? paid_out(poses) : 0);
-  for_each_span(memory, [&](const Span& span) {
-    if (span.part != part) return;
+  for_each_span(memory, part, [&](const Span& span) {
     const PieceState state = span.piece.follow(poses.of(span.piece), memory.angles(span.first, span.second));
     out.length += state.value(span.length);
     out.rest += state.value(span.rest);
@@ -195,15 +198,15 @@ void Tendon::find_gradients(const Poses& poses, const Memory& memory, int part, 
     if (span.first_node >= 0) sum.segment<6>(6 * span.first_node) += gradient.head<6>();
     if (span.second_node >= 0) sum.segment<6>(6 * span.second_node) += gradient.tail<6>();
   };
-  for_each_span(memory, [&](const Span& span) {
-    if (span.part != part || span.first_node == span.second_node) return;
+  for_each_span(memory, part, [&](const Span& span) {
+    if (span.first_node == span.second_node) return;
     const PiecePoses at = poses.of(span.piece);
     const PieceState here = span.piece.follow(at, memory.angles(span.first, span.second));
     add(out.length, span, span.piece.gradient(at, here, span.length));
     if (span.winds) add(out.rest, span, span.piece.gradient(at, here, span.rest));
   });
-  for (const TendonWinch& winch : plan_.winches)
-    if (part == 0 && winch.node >= 0) out.rest.segment<3>(6 * local(winch.node)) += winch.direction;
+  for (std::size_t i = 0; i < plan_.winches.size(); ++i)
+    if (part == 0 && winch_nodes_[i] >= 0) out.rest.segment<3>(6 * winch_nodes_[i]) += plan_.winches[i].direction;
 }
 
 double Tendon::stretch_rate(const Poses& poses, const Memory& memory, int part,

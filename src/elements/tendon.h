@@ -91,11 +91,13 @@ class Tendon : public ForceElement {
   };
   /// The guides that the line touches next to one.
   Neighbours neighbours(const Memory& memory, int guide) const;
-  int local(int node) const;
   Span span(int first, int second, int part) const;
   /// Calls visit(span) for all spans along the line between the guides that are touched.
   template <class Visit>
   void for_each_span(const Memory& memory, const Visit& visit) const;
+  /// The same for one part.
+  template <class Visit>
+  void for_each_span(const Memory& memory, int part, const Visit& visit) const;
   TendonLengths lengths(const Poses& poses, const Memory& memory, int part) const;
   FunctionStep function_of(const ForceStep& step) const;
   double paid_out(const Poses& poses) const;
@@ -120,6 +122,8 @@ class Tendon : public ForceElement {
   void find_gradients(const Poses& poses, const Memory& memory, int part, PartForces& out) const;
 
   TendonPlan plan_;
+  std::vector<int> guide_nodes_, winch_nodes_;  // indices into reach(); -1: world
+  std::vector<int> part_ends_{0};               // guides at the ends of parts: the first, those that divide, the last
   int parts_ = 1;
   std::vector<double> shares_;  // per part, of the function's rest length
   double length_at_start_ = 0;

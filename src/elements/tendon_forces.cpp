@@ -94,10 +94,10 @@ void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Me
     if (span.winds && !plan_.has_tension)
       add(span.rest, line.release, directions[span.part].rest, slopes[span.part].rest);
   });
-  for (const TendonWinch& winch : plan_.winches)
-    if (winch.node >= 0)
+  for (std::size_t i = 0; i < plan_.winches.size(); ++i)
+    if (winch_nodes_[i] >= 0)
       for (Eigen::VectorXd* sum : {&directions[0].rest, &slopes[0].rest})
-        sum->segment<3>(6 * local(winch.node)) += winch.direction;
+        sum->segment<3>(6 * winch_nodes_[i]) += plan_.winches[i].direction;
 }
 
 void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) const {

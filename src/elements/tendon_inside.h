@@ -79,11 +79,15 @@ struct Tendon::Scratch {
 
 template <class Visit>
 void Tendon::for_each_span(const Memory& memory, const Visit& visit) const {
-  int first = 0, part = 0;
-  for (int i = 1; i < static_cast<int>(plan_.guides.size()); ++i) {
+  for (int part = 0; part < parts_; ++part) for_each_span(memory, part, visit);
+}
+
+template <class Visit>
+void Tendon::for_each_span(const Memory& memory, int part, const Visit& visit) const {
+  int first = part_ends_[part];
+  for (int i = first + 1; i <= part_ends_[part + 1]; ++i) {
     if (memory.touched(i) == 0) continue;
     visit(span(first, i, part));
-    part += plan_.guides[i].divides() ? 1 : 0;
     first = i;
   }
 }
