@@ -26,6 +26,9 @@ std::vector<int> nodes_of(const TendonPlan& plan) {
   return nodes;
 }
 
+/// Lines over so few nodes have one dense matrix, which then is as fast (docs/notes/lines.md 5).
+constexpr std::size_t kMostDenseNodes = 4;
+
 /// In pictures a turn on a pulley consists of so many straight parts.
 constexpr int kMostArcs = 36;
 
@@ -49,6 +52,7 @@ Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, co
   }
   parts_ = static_cast<int>(part_ends_.size());
   part_ends_.push_back(last);
+  find_pieces();
   shares_.assign(parts_, 1.0);
   std::vector<double> numbers(memory_size(), 0.0);
   const NewMemory memory{numbers.data(), parts_};
@@ -57,6 +61,26 @@ Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, co
   length_at_start_ = std::accumulate(shares_.begin(), shares_.end(), 0.0);
   for (double& share : shares_) share /= length_at_start_;
   if (plan_.rest_length == 0) plan_.rest_length = length_at_start_;
+}
+
+/// A piece may lead from each guide to the next one, and to those behind pulleys that the line may leave.
+void Tendon::find_pieces() {
+  const int last = static_cast<int>(plan_.guides.size()) - 1;
+  if (parts_ > 1 || reach().size() <= kMostDenseNodes) return;
+  const auto may_leave = [&](int guide) { return plan_.guides[guide].place.is_circle() && guide < last; };
+  std::vector<std::array<int, 2>>& pairs = pieces_.pairs;
+  for (int i = 0; i < last; ++i) {
+    first_piece_.push_back(static_cast<int>(pairs.size()));
+    for (int j = i + 1; j <= last; ++j) {
+      pairs.push_back({guide_nodes_[i], guide_nodes_[j]});
+      if (!may_leave(j)) break;
+    }
+  }
+  if (pairs.size() > 4 * plan_.guides.size()) return pairs.clear();  // many pulleys in succession
+  const auto winds = [&](int end) { return plan_.guides[end].place.is_circle(); };
+  const bool changes =
+      winds(0) || winds(last) || std::any_of(winch_nodes_.begin(), winch_nodes_.end(), [](int i) { return i >= 0; });
+  pieces_.rank = plan_.has_tension ? 0 : changes ? 2 : 1;
 }
 
 std::string Tendon::description() const {

@@ -62,6 +62,8 @@ class Tendon : public ForceElement {
   const char* kind() const override { return "tendon"; }
   std::string description() const override;
 
+  /// The straight pieces, if the line has one part and touches many nodes. Then evaluate() can also give one matrix.
+  const ForcePieces& pieces() const override { return pieces_; }
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   double energy(const State& state, const double* memory) const override;
   ForceMeasures measures(const State& state, const double* memory, const int* nodes) const override;
@@ -89,6 +91,7 @@ class Tendon : public ForceElement {
   struct Neighbours {
     int before, behind;
   };
+  void find_pieces();
   /// The guides that the line touches next to one.
   Neighbours neighbours(const Memory& memory, int guide) const;
   Span span(int first, int second, int part) const;
@@ -113,8 +116,11 @@ class Tendon : public ForceElement {
   bool find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const;
   void add_directions(const ForceStep& step, const Memory& begin, const Memory& end, const TendonSlip& slip,
                       std::vector<PartForces>& directions, std::vector<PartForces>& slopes, ForceAction& action) const;
+  void add_slope(const Span& span, double force, const Matrix12& slope, ForceAction& action) const;
   void add_forces(TendonSlip& slip, const std::vector<PartForces>& directions, const std::vector<PartForces>& slopes,
                   ForceAction& action) const;
+  void set_factors(const TendonStep& line, const PartForces& directions, const PartForces& slopes,
+                   PieceTangent& tangent) const;
   /// The rate of a part's length minus its rest length, but for the function of time and slipping [m/s]. `velocities`:
   /// of all nodes.
   double stretch_rate(const Poses& poses, const Memory& memory, int part, const std::vector<Vector6>& velocities) const;
@@ -127,7 +133,9 @@ class Tendon : public ForceElement {
   int parts_ = 1;
   std::vector<double> shares_;  // per part, of the function's rest length
   double length_at_start_ = 0;
-  bool may_lift_ = false;  // whether there are pulleys that the line may leave
+  ForcePieces pieces_;
+  std::vector<int> first_piece_;  // per guide: index into pieces_.pairs of the piece to the next guide
+  bool may_lift_ = false;         // whether there are pulleys that the line may leave
 };
 
 }  // namespace flexarm

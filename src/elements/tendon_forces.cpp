@@ -66,7 +66,7 @@ void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Me
                             std::vector<PartForces>& directions, std::vector<PartForces>& slopes,
                             ForceAction& action) const {
   const Poses from(step.begin), to(step.end);
-  const bool with_slope = action.tangent.size() != 0;
+  const bool with_slope = action.wants_tangent();
   for_each_span(begin, [&](const Span& span) {
     if (span.first_node == span.second_node) return;  // on one body: nothing changes
     const auto at = [&](const Poses& poses, const Memory& memory) {
@@ -83,11 +83,8 @@ void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Me
         direction.segment<6>(6 * nodes[i]) += change.direction.segment<6>(6 * i);
         if (!with_slope) continue;
         slope.segment<6>(6 * nodes[i]) += change.end_gradient.segment<6>(6 * i);
-        for (int j = 0; j < 2; ++j)
-          if (nodes[j] >= 0)
-            action.tangent.block<6, 6>(6 * nodes[i], 6 * nodes[j]) +=
-                force * change.direction_slope.block<6, 6>(6 * i, 6 * j);
       }
+      if (with_slope) add_slope(span, force, change.direction_slope, action);
     };
     const TendonStep& line = slip.steps()[span.part];
     add(span.length, line.tension, directions[span.part].length, slopes[span.part].length);
@@ -103,6 +100,7 @@ void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Me
 void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) const {
   action.residual.setZero();
   action.tangent.setZero();
+  for (auto* matrix : {&action.pieces.blocks, &action.pieces.left, &action.pieces.right}) matrix->setZero();
   action.dissipated = action.work = 0;
   const Memory begin{step.memory, parts_};
   const NewMemory end{step.new_memory, parts_};
@@ -143,10 +141,36 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   action.dissipated += before - energy(Poses(step.end), end);
 }
 
+/// Adds the change of a force along the direction of a span.
+void Tendon::add_slope(const Span& span, double force, const Matrix12& slope, ForceAction& action) const {
+  if (action.tangent.size() == 0) {
+    const Eigen::Index piece = first_piece_[span.first] + span.second - span.first - 1;
+    action.pieces.blocks.middleCols<12>(12 * piece) += force * slope;
+    return;
+  }
+  const int nodes[2] = {span.first_node, span.second_node};
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (nodes[i] >= 0 && nodes[j] >= 0)
+        action.tangent.block<6, 6>(6 * nodes[i], 6 * nodes[j]) += force * slope.block<6, 6>(6 * i, 6 * j);
+}
+
+/// The change of both forces of a line of one part by its two lengths, as a product of rank two or less.
+void Tendon::set_factors(const TendonStep& line, const PartForces& directions, const PartForces& slopes,
+                         PieceTangent& tangent) const {
+  if (pieces_.rank == 0) return;
+  tangent.left.col(0) = line.by_length * directions.length + line.release_by_length * directions.rest;
+  tangent.right.row(0) = slopes.length.transpose();
+  if (pieces_.rank == 1) return;  // the rest length depends on no motion
+  tangent.left.col(1) = line.by_rest * directions.length + line.release_by_rest * directions.rest;
+  tangent.right.row(1) = slopes.rest.transpose();
+}
+
 /// Adds tensions along the directions, and the derivatives of the tensions.
 void Tendon::add_forces(TendonSlip& slip, const std::vector<PartForces>& directions,
                         const std::vector<PartForces>& slopes, ForceAction& action) const {
   const bool with_slope = action.tangent.size() != 0;
+  if (action.pieces.blocks.size() != 0) set_factors(slip.steps()[0], directions[0], slopes[0], action.pieces);
   if (with_slope) slip.find_slopes();
   // The change of what a part gains by slipping, by the lengths of another part.
   const auto gains = [](const Eigen::MatrixXd& by, int part, int other) {

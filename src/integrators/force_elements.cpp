@@ -33,17 +33,21 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
         fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
                     elements.front()->kind()));
   int most = 0, memory = 0, functions = 0;
+  std::size_t numbers = 0;
   for (const auto& element : elements) {
     memory_begins_.push_back(memory);
     function_begins_.push_back(functions);
     nodes_.emplace_back().reserve(element->most_nodes());
-    most = std::max(most, 6 * element->most_nodes());
+    const std::size_t size = 6 * element->most_nodes();
+    most = std::max(most, static_cast<int>(size));
+    const ForcePieces& pieces = element->pieces();
+    numbers = std::max(numbers, pieces.pairs.empty() ? size * size : PieceTangent::size(pieces, size / 6));
     memory += element->memory_size();
     functions += static_cast<int>(element->functions().size());
     may_be_far_ = may_be_far_ || element->hits();
   }
   residual_.resize(most);
-  tangent_.resize(static_cast<std::size_t>(most) * most);
+  tangent_.resize(numbers);
   memory_.resize(memory);
   functions_.resize(functions);
   acts_.resize(elements.size());
@@ -114,13 +118,21 @@ void ForceElements::evaluate(Balance& balance) {
 
 void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& balance) {
   const std::vector<int>& nodes = nodes_[k];
-  const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()), rows = balance.tangent ? size : 0;
-  ForceAction action{{residual_.data(), size}, {tangent_.data(), rows, rows}};
-  configuration_.model().force_elements[k]->evaluate(step, nodes.data(), action);
+  const ForceElement& element = *configuration_.model().force_elements[k];
+  const ForcePieces& pieces = element.pieces();
+  const bool in_pieces = !pieces.pairs.empty();
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()),
+                     rows = balance.tangent && !in_pieces ? size : 0;
+  ForceAction action{
+      {residual_.data(), size},
+      {tangent_.data(), rows, rows},
+      balance.tangent && in_pieces ? PieceTangent::in(tangent_.data(), pieces, nodes.size()) : PieceTangent()};
+  element.evaluate(step, nodes.data(), action);
   if (not_finite_ < 0 && !std::isfinite(action.residual.sum())) not_finite_ = static_cast<int>(k);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     balance.residual.node(nodes[i]) += action.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
-  if (balance.tangent) balance.tangent->add_coupling(static_cast<int>(k), action.tangent);
+  if (balance.tangent && in_pieces) balance.tangent->add_coupling(static_cast<int>(k), action.pieces);
+  if (balance.tangent && !in_pieces) balance.tangent->add_coupling(static_cast<int>(k), action.tangent);
   balance.dissipated += action.dissipated;
   work_ += action.work;
 }

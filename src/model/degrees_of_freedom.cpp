@@ -39,4 +39,12 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model)
   }
 }
 
+int DegreesOfFreedom::add_variable(int count) {
+  size.push_back(count);
+  first.push_back(scalar_count);
+  scalar_count += count;
+  equation.resize(scalar_count, -1);
+  return static_cast<int>(size.size()) - 1;
+}
+
 }  // namespace flexarm

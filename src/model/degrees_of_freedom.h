@@ -13,6 +13,9 @@ namespace flexarm {
 struct DegreesOfFreedom {
   explicit DegreesOfFreedom(const Model& model);
 
+  /// Appends a variable without equations, which only a solver knows. Returns it.
+  int add_variable(int count);
+
   int variable_of_node(int node) const { return node; }
   int variable_of_joint(int joint) const { return node_count + joint; }
   int variable_of_closure(int closure) const { return node_count + joint_count + closure; }

@@ -4,6 +4,13 @@
 
 namespace flexarm {
 
+PieceTangent PieceTangent::in(double* numbers, const ForcePieces& pieces, std::size_t nodes) {
+  const auto size = static_cast<Eigen::Index>(6 * nodes);
+  const Eigen::Index count = static_cast<Eigen::Index>(pieces.pairs.size()), rank = pieces.rank;
+  double *left = numbers + 144 * count, *right = left + size * rank;
+  return {{numbers, 12, 12 * count}, {left, size, rank}, {right, rank, size}};
+}
+
 void find_nodes(const ForceElement& element, const ForceStart& start, std::vector<int>& nodes) {
   nodes.resize(element.most_nodes());
   nodes.resize(element.find_nodes(start, nodes.data()));

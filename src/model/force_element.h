@@ -3,6 +3,7 @@
 /// is a class derived from ForceElement.
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -51,13 +52,38 @@ struct ForceStep {
   double* new_memory = nullptr;             ///< output: the memory at the end, memory_size() numbers
 };
 
+/// How the tangent of a force element that acts on many nodes is composed: of blocks of two nodes each, its pieces, and
+/// a product of low rank. Solvers then need not couple all nodes with each other. (docs/notes/tree.md 5)
+struct ForcePieces {
+  std::vector<std::array<int, 2>> pairs;  ///< per piece: indices into reach(), -1: none; empty: one dense matrix
+  int rank = 0;                           ///< of the product, at most 6
+};
+
+/// A tangent that consists of pieces. It is the sum of their blocks, and of left * right. Rows and columns as in
+/// ForceAction, n nodes.
+struct PieceTangent {
+  Eigen::Map<Eigen::MatrixXd> blocks{nullptr, 12, 0};  ///< 12 x 12 per piece, side by side; those of node -1 count not
+  Eigen::Map<Eigen::MatrixXd> left{nullptr, 0, 0};     ///< 6n x rank
+  Eigen::Map<Eigen::MatrixXd> right{nullptr, 0, 0};    ///< rank x 6n
+
+  /// The size of `numbers` of a tangent of an element with so many nodes.
+  static std::size_t size(const ForcePieces& pieces, std::size_t nodes) {
+    return 144 * pieces.pairs.size() + 12 * nodes * pieces.rank;
+  }
+  /// A tangent whose matrices are in `numbers`.
+  static PieceTangent in(double* numbers, const ForcePieces& pieces, std::size_t nodes);
+};
+
 /// The contribution of a force element to the balance of a step. For each node that it acts on, in their order:
 /// residual rows {force, moment} and tangent columns {displacement, spin}, world axes.
 struct ForceAction {
   Eigen::Map<Eigen::VectorXd> residual;  ///< output: minus the forces on the nodes
   Eigen::Map<Eigen::MatrixXd> tangent;   ///< output: its derivative by motions at the end; no rows: not needed
+  PieceTangent pieces = {};              ///< output: the same in pieces, if the element has some; empty: not needed
   double dissipated = 0;                 ///< output: dissipated over the step [J]
   double work = 0;                       ///< output: work done on the mechanism from outside over the step [J]
+
+  bool wants_tangent() const { return tangent.size() != 0 || pieces.blocks.size() != 0; }
 };
 
 /// A force element for small motions: springs and dampers that act on a few scalar measures of the poses of its nodes,
@@ -149,6 +175,12 @@ class ForceElement {
     static_cast<void>(start);
     std::copy(reach_.begin(), reach_.end(), nodes);
     return static_cast<int>(reach_.size());
+  }
+
+  /// How the tangent is composed. An element with pieces acts on all nodes of reach() in every step, in their order.
+  virtual const ForcePieces& pieces() const {
+    static const ForcePieces none;
+    return none;
   }
 
   /// Returns the room from the poses of `start` on. Until it is used up, find_nodes() finds no nodes and needs_halves()

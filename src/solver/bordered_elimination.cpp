@@ -17,6 +17,9 @@ BorderedElimination::BorderedElimination(const Model& model, const DegreesOfFree
   for (int scalar = 0; scalar < dof.scalar_count; ++scalar)
     if (dof.equation[scalar] >= 0) is_placed_[scalar] = true;
   for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) is_placed_[dof.first[mimic.slave_variable]] = true;
+  for (std::size_t k = 0; k < model.force_elements.size(); ++k)
+    if (const int auxiliary = order.auxiliary(static_cast<int>(k)); auxiliary >= 0)
+      std::fill_n(is_placed_.begin() + dof.first[auxiliary], dof.size[auxiliary], true);
   reserve();
 }
 
@@ -34,6 +37,8 @@ void BorderedElimination::reserve() {
     for (const int variable : part.complete) own += dof_.size[variable];
     for (const int e : part.elements) own += 6 * order_.parts()[e].node_count;
     own += 6 * static_cast<int>(part.closures.size()) + static_cast<int>(part.mimics.size());
+    own += 6 * static_cast<int>(part.pieces.size());
+    for (const auto& [coupling, node] : part.factors) own += dof_.size[order_.auxiliary(coupling)];
     const int size = own + riders, lanes = lanes_for(size);
     most = std::max(most, size);
     scalars += 4 * static_cast<std::size_t>(size);
@@ -148,12 +153,18 @@ void BorderedElimination::assemble(int index) {
     }
     for (const int closure : part.closures) add_closure(closure);
     for (int k = part.first_coupling; k >= 0; k = order_.next_coupling(k)) add_coupling(k);
+    for (const TreePart::OfCoupling& piece : part.pieces) add_piece(piece);
+    for (const TreePart::OfCoupling& node : part.factors) add_factors(node);
     for (const int variable : part.complete) add_diagonal(variable);
   });
 }
 
 void BorderedElimination::add_diagonal(int variable) {
   const int first = dof_.first[variable], size = dof_.size[variable];
+  if (variable >= dof_.variable_of_closure(static_cast<int>(model_.closures.size()))) {  // an auxiliary one
+    for (int k = first; k < first + size; ++k) front_.row(front_.row_place(k))[front_.column_place(k)] += 1;
+    return;
+  }
   if (variable >= dof_.node_count + dof_.joint_count) return;  // multipliers have no diagonal block
   for (int r = 0; r < size; ++r)
     for (int c = 0; c < size; ++c)
@@ -182,6 +193,27 @@ void BorderedElimination::add_coupling(int k) {
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < count; ++j)
       if (i != j) front_.add(6 * nodes[i], 6 * nodes[j], &values(6 * i, 6 * j), 6, 6, distance);
+}
+
+/// Adds the blocks of a piece's two nodes with each other.
+void BorderedElimination::add_piece(const TreePart::OfCoupling& piece) {
+  const auto [a, b] = model_.force_elements[piece.coupling]->pieces().pairs[piece.index];
+  const std::vector<int>& nodes = order_.coupled_nodes(piece.coupling);
+  const Eigen::MatrixXd& values = blocks_.pieces[piece.coupling].blocks;
+  const Eigen::Index at = 12 * static_cast<Eigen::Index>(piece.index);
+  front_.add(6 * nodes[a], 6 * nodes[b], &values(0, at + 6), 6, 6, 12);
+  front_.add(6 * nodes[b], 6 * nodes[a], &values(6, at), 6, 6, 12);
+}
+
+/// Adds what couples a node with the auxiliary variable t = -right x. Its equation is right x + t = 0, and -left t
+/// stands in the rows of the nodes.
+void BorderedElimination::add_factors(const TreePart::OfCoupling& node) {
+  const int variable = order_.auxiliary(node.coupling), first = dof_.first[variable], rank = dof_.size[variable];
+  const int scalar = 6 * order_.coupled_nodes(node.coupling)[node.index];
+  const TreeBlocks::Pieces& values = blocks_.pieces[node.coupling];
+  const Eigen::Index at = 6 * static_cast<Eigen::Index>(node.index);
+  front_.add(scalar, first, &values.left(at, 0), 6, rank, static_cast<int>(values.left.rows()));
+  front_.add(first, scalar, &values.right(0, at), rank, 6, rank);
 }
 
 void BorderedElimination::add_remainder(const Factors& f) {

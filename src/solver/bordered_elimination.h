@@ -57,6 +57,8 @@ class BorderedElimination {
   void add_diagonal(int variable);
   void add_closure(int closure);
   void add_coupling(int coupling);
+  void add_piece(const TreePart::OfCoupling& piece);
+  void add_factors(const TreePart::OfCoupling& node);
   void add_remainder(const Factors& factors);
   void fold_slave(const TreePart& part, Factors& factors);
   void set_targets(const JointMap& joint, int j, Factors& factors);

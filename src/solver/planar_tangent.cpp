@@ -81,6 +81,9 @@ void PlanarTangent::couple(int, const int*, int) {
 void PlanarTangent::add_coupling(int, const Eigen::Ref<const Eigen::MatrixXd>&) {
   refuse("springs between points");
 }
+void PlanarTangent::add_coupling(int, const PieceTangent&) {
+  refuse("lines over points");
+}
 SlideMaps& PlanarTangent::slide_maps(int) {
   refuse("sliders");
 }

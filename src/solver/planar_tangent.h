@@ -40,6 +40,7 @@ class PlanarTangent : public TangentBackend {
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   void couple(int index, const int* nodes, int count) override;
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
+  void add_coupling(int index, const PieceTangent& tangent) override;
   SlideMaps& slide_maps(int joint) override;
   /// Throws unless `maps` is empty.
   void fold_mimics(const std::vector<MimicMap>& maps) override;

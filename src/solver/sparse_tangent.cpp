@@ -75,6 +75,25 @@ void SparseTangent::add_coupling(int index, const Eigen::Ref<const Eigen::Matrix
       Eigen::Map<Matrix6>(values_.data() + blocks_[blocks[i * count + j]].offset) += values.block<6, 6>(6 * i, 6 * j);
 }
 
+void SparseTangent::add_coupling(int index, const PieceTangent& tangent) {
+  const auto& [nodes, blocks] = couplings_[index];
+  const int count = static_cast<int>(nodes.size());
+  const auto block = [&, places = blocks.data()](int i, int j) {
+    return Eigen::Map<Matrix6>(values_.data() + blocks_[places[i * count + j]].offset);
+  };
+  const ForcePieces& pieces = model_.force_elements[index]->pieces();
+  for (std::size_t p = 0; p < pieces.pairs.size(); ++p)
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (pieces.pairs[p][i] >= 0 && pieces.pairs[p][j] >= 0)
+          block(pieces.pairs[p][i], pieces.pairs[p][j]) +=
+              tangent.blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * j);
+  if (pieces.rank == 0) return;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j)
+      block(i, j) += tangent.left.middleRows<6>(6 * i).lazyProduct(tangent.right.middleCols<6>(6 * j));
+}
+
 void SparseTangent::fold(int j) {
   if (model_.joints[j].kind == JointMapKind::Slide)
     fold(j, slide_maps_);

@@ -30,6 +30,8 @@ class SparseTangent : public TangentBackend {
   /// If the nodes differ from those before, all blocks get new places, which allocates memory.
   void couple(int index, const int* nodes, int count) override;
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
+  /// Adds the product as one dense matrix.
+  void add_coupling(int index, const PieceTangent& tangent) override;
   FoldMaps& fold_maps(int) override { return maps_; }
   SlideMaps& slide_maps(int) override { return slide_maps_; }
   void fold(int joint) override;

@@ -60,6 +60,9 @@ class TangentBackend {
   virtual void couple(int index, const int* nodes, int count) = 0;
   /// Adds the blocks of a coupling's nodes with each other, 6 count x 6 count. To be called before joints are folded.
   virtual void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) = 0;
+  /// Adds a coupling whose element has ForcePieces, at most once after set_zero(). To be called before joints are
+  /// folded.
+  virtual void add_coupling(int index, const PieceTangent& tangent) = 0;
 
   // ---- reduction
   /// The maps of a joint, or of a slider, to be filled before fold().

@@ -24,8 +24,14 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
     const int size = 12 + dof.size[dof.variable_of_closure(static_cast<int>(k))];
     closures.push_back(Eigen::MatrixXd::Zero(size, size));
   }
-  for (const auto& element : model.force_elements)
-    couplings.push_back(Eigen::MatrixXd::Zero(6 * element->most_nodes(), 6 * element->most_nodes()));
+  for (const auto& element : model.force_elements) {
+    const auto& [pairs, rank] = element->pieces();
+    const Eigen::Index size = 6 * element->most_nodes(), dense = pairs.empty() ? size : 0;
+    couplings.push_back(Eigen::MatrixXd::Zero(dense, dense));
+    const Eigen::Index numbers = pairs.empty() ? 0 : size, columns = 12 * static_cast<Eigen::Index>(pairs.size());
+    pieces.push_back({Eigen::MatrixXd::Zero(12, columns), Eigen::MatrixXd::Zero(numbers, rank),
+                      Eigen::MatrixXd::Zero(rank, numbers)});
+  }
 }
 
 void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,

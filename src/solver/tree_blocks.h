@@ -23,6 +23,12 @@ struct TreeBlocks {
   /// Per closure: the matrix of {child, parent, multipliers}.
   std::vector<Eigen::MatrixXd> closures;
   std::vector<Eigen::MatrixXd> couplings;  ///< per force element: the matrix of the nodes that it couples
+  /// The same for those in pieces, as in PieceTangent, but -left.
+  struct Pieces {
+    Eigen::MatrixXd blocks, left, right;
+    void set_zero() { blocks.setZero(), left.setZero(), right.setZero(); }
+  };
+  std::vector<Pieces> pieces;
   std::vector<MimicMap> mimics;
   std::vector<HeldRow> held;
 

@@ -6,16 +6,22 @@
 namespace flexarm {
 
 TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model),
-      dof_(dof),
-      completion_(dof.size.size(), -1),
-      windows_(model.joints.size(), {0, 0}),
-      visited_(dof.size.size(), -1),
-      receives_(dof.node_count) {
+    : model_(model), dof_(dof), windows_(model.joints.size(), {0, 0}), receives_(dof.node_count) {
+  const std::vector<Vector6> at_rest(model_.nodes.size(), Vector6::Zero());
+  for (const auto& element : model_.force_elements) {
+    const ForcePieces& pieces = element->pieces();
+    Coupling& coupling = couplings_.emplace_back();
+    find_nodes(*element, {model_.nodes, at_rest}, coupling.nodes);
+    coupling.in_pieces = !pieces.pairs.empty();
+    if (pieces.rank > 0) coupling.auxiliary = dof_.add_variable(pieces.rank);
+  }
+  completion_.assign(dof_.size.size(), -1);
+  visited_.assign(dof_.size.size(), -1);
   order_parts();
   if (parts_.empty()) return;
   place_variables();
   place_mimics();
+  place_pieces();
   for (std::size_t v = 0; v < completion_.size(); ++v)
     if (completion_[v] >= 0) parts_[completion_[v]].complete.push_back(static_cast<int>(v));
   last_ = completion_;
@@ -25,11 +31,6 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
     const SlideLine& line = model_.slide_lines[model_.joints[j].line];
     const int piece = line.piece_at(model_.initial_released[j].displacement[0]);
     windows_[j] = line.support(piece, piece);
-  }
-  const std::vector<Vector6> at_rest(model_.nodes.size(), Vector6::Zero());
-  for (const auto& element : model_.force_elements) {
-    couplings_.emplace_back();
-    find_nodes(*element, {model_.nodes, at_rest}, couplings_.back().nodes);
   }
   count_riders();
   complete_ = true;
@@ -47,6 +48,7 @@ void TreeOrder::set_window(int joint, NodeRange window) {
 void TreeOrder::set_coupling(int coupling, const int* nodes, int count) {
   assert(coupling >= 0 && static_cast<std::size_t>(coupling) < couplings_.size() && count >= 0);
   std::vector<int>& old = couplings_[coupling].nodes;
+  if (couplings_[coupling].in_pieces) return;  // it always couples the same nodes
   if (std::equal(nodes, nodes + count, old.begin(), old.end())) return;
   old.assign(nodes, nodes + count);
   old_ = true;
@@ -78,8 +80,9 @@ std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts
     for (const int node : model_.slide_lines[joint.line].nodes) parts[node].push_back(completion_[joint.slave]);
   }
   // A force element may couple any two nodes of its reach. For this, the tree must have a path through all of them.
-  for (const auto& element : model_.force_elements) {
-    std::vector<int> nodes = element->reach();
+  for (std::size_t k = 0; k < couplings_.size(); ++k) {
+    if (couplings_[k].in_pieces) continue;
+    std::vector<int> nodes = model_.force_elements[k]->reach();
     std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return completion_[a] < completion_[b]; });
     for (std::size_t i = 1; i < nodes.size(); ++i) parts[nodes[i]].push_back(completion_[nodes[i - 1]]);
   }
@@ -136,6 +139,7 @@ void TreeOrder::count_riders() {
 void TreeOrder::count_riders_of_couplings(const std::vector<int>& next) {
   std::vector<int> last_rider(parts_.size(), -1);
   for (std::size_t k = 0; k < model_.force_elements.size(); ++k) {
+    if (couplings_[k].in_pieces) continue;  // counted as what parts couple by themselves
     const ForceElement& element = *model_.force_elements[k];
     std::vector<int> completions;
     for (const int node : element.reach()) completions.push_back(completion_[node]);
@@ -179,7 +183,7 @@ void TreeOrder::find_fronts() {
 
 bool TreeOrder::may_join(const TreePart& part, const TreePart& next) const {
   for (const TreePart* each : {&part, &next})
-    if (!each->closures.empty() || !each->mimics.empty() || each->first_coupling >= 0) return false;
+    if (!each->closures.empty() || !each->mimics.empty() || each->couples_forces()) return false;
   int folds = next.joint >= 0 ? 1 : 0;
   for (int p = part.first_member; p >= 0; p = parts_[p].next_member) folds += parts_[p].joint >= 0 ? 1 : 0;
   const int* rest = border(part);
@@ -209,6 +213,10 @@ void TreeOrder::for_each_of_its_own(const TreePart& part, const Visit& visit) co
   }
   for (int k = part.first_coupling; k >= 0; k = couplings_[k].next)
     std::for_each(couplings_[k].nodes.begin(), couplings_[k].nodes.end(), visit);
+  for (const auto& [coupling, piece] : part.pieces)
+    for (const int node : model_.force_elements[coupling]->pieces().pairs[piece])
+      visit(couplings_[coupling].nodes[node]);
+  for (const TreePart::OfCoupling& node : part.factors) visit(couplings_[node.coupling].auxiliary);
   std::for_each(part.complete.begin(), part.complete.end(), visit);
   if (part.joint >= 0) {
     const JointMap& joint = model_.joints[part.joint];
@@ -243,7 +251,7 @@ void TreeOrder::find_border(int index) {
   part.passes_node = part.border_count == 0 || (part.border_count == 1 && border_[part.first_border] < dof_.node_count);
   const bool has_own_element =
       part.joint >= 0 ? part.elements.empty() : part.elements.size() == 1 && part.elements[0] == index;
-  part.has_border = part.first_child >= 0 || part.first_coupling >= 0 || !part.passes_node || !part.closures.empty() ||
+  part.has_border = part.first_child >= 0 || part.couples_forces() || !part.passes_node || !part.closures.empty() ||
                     !part.mimics.empty() || !has_own_element;
   if (part.passes_node) return;
   part.next_sibling = parts_[next].first_child;

@@ -18,6 +18,11 @@ struct TreePart {
 
   // ---- what is added or becomes complete here: indices of parts, closures, DegreesOfFreedom::mimics, variables
   std::vector<int> elements, closures, mimics, complete;
+  /// A piece of a coupling, or one of its nodes, which is complete here; see ForcePieces.
+  struct OfCoupling {
+    int coupling, index;
+  };
+  std::vector<OfCoupling> pieces, factors;
 
   // ---- these depend on the windows of sliders and on the nodes of couplings
   int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): variables that later parts eliminate
@@ -25,9 +30,11 @@ struct TreePart {
   int front = -1;                           ///< part in whose front this one is eliminated; usually itself
   int first_coupling = -1;                  ///< list of couplings added here, see TreeOrder::next_coupling(); -1: none
   int first_member = -1, next_member = -1;  ///< first part in its own front; next part in a shared front; -1: none
-  bool has_border = false;                  ///< it couples more than the nodes and coordinates of this part
-  bool passes_node = true;                  ///< the remainder is a 6 x 6 block of the inboard node, or nothing
-  bool keeps_interior = false;              ///< element without border; no part leaves a remainder between its ends
+  /// Whether tangents of force elements are added here.
+  bool couples_forces() const { return first_coupling >= 0 || !pieces.empty() || !factors.empty(); }
+  bool has_border = false;      ///< it couples more than the nodes and coordinates of this part
+  bool passes_node = true;      ///< the remainder is a 6 x 6 block of the inboard node, or nothing
+  bool keeps_interior = false;  ///< element without border; no part leaves a remainder between its ends
 };
 
 /// All parts in the order of elimination, for a multifrontal method: each part assembles a dense matrix, its front, of
@@ -36,11 +43,16 @@ struct TreePart {
 /// joints and elements every border is just the inboard node. Other variables join a border and ride along, as riders,
 /// until their own part comes: for a slider the active nodes of its line, for a closure its other node and its
 /// multipliers, for a mimic coordinate the one that it follows, for a beam whose far end is held by another joint the
-/// master of that joint, for a force element its other nodes.
+/// master of that joint, for a force element its other nodes. A force element in pieces couples the two nodes of each
+/// piece. For the product of low rank it has an auxiliary variable, which rides from its first node to its last one.
 class TreeOrder {
  public:
   TreeOrder(const Model& model, const DegreesOfFreedom& dof);
 
+  /// The degrees of freedom, and behind them the auxiliary variables of force elements.
+  const DegreesOfFreedom& dof() const { return dof_; }
+  /// The auxiliary variable of a force element; -1: none.
+  int auxiliary(int coupling) const { return couplings_[coupling].auxiliary; }
   /// False if a node is no slave of a joint and not exactly one chain of elements leads to it from a slave.
   bool is_complete() const { return complete_; }
   const std::vector<TreePart>& parts() const { return parts_; }
@@ -54,7 +66,7 @@ class TreeOrder {
   NodeRange window(int joint) const { return windows_[joint]; }
   void set_window(int joint, NodeRange window);
   /// The nodes that a force element couples now, and the next coupling in the same part; -1: none. Couplings of less
-  /// than two nodes belong to no part.
+  /// than two nodes, and those in pieces, belong to no part.
   const std::vector<int>& coupled_nodes(int coupling) const { return couplings_[coupling].nodes; }
   int next_coupling(int coupling) const { return couplings_[coupling].next; }
   void set_coupling(int coupling, const int* nodes, int count);
@@ -63,10 +75,12 @@ class TreeOrder {
 
  private:
   void order_parts();
+  void keep_branches_together();
   void place_variables();
   void place_mimics();
   void place_closures();
   void place_couplings();
+  void place_pieces();
   std::vector<std::vector<int>> parts_of_variables() const;
   std::vector<int> elimination_tree(std::vector<std::vector<int>> parts) const;
   void count_riders();
@@ -84,7 +98,7 @@ class TreeOrder {
   void for_each_of_its_own(const TreePart& part, const Visit& visit) const;
 
   const Model& model_;
-  const DegreesOfFreedom& dof_;
+  DegreesOfFreedom dof_;
   bool complete_ = false, old_ = true;
   std::vector<TreePart> parts_;
   /// Per variable: the part in which it is complete, and the last part up to which it may be in borders. They differ
@@ -94,6 +108,8 @@ class TreeOrder {
   struct Coupling {
     std::vector<int> nodes;
     int next = -1;
+    bool in_pieces = false;
+    int auxiliary = -1;
   };
   std::vector<Coupling> couplings_;  // per force element
   std::vector<int> border_, visited_, most_riders_;

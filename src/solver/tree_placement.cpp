@@ -1,6 +1,7 @@
 // TreeOrder: the parts in their order, and where variables, closures and couplings belong.
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "solver/tree_order.h"
 
@@ -43,7 +44,46 @@ void TreeOrder::order_parts() {
   }
   const bool all_reached = std::all_of(reached.begin(), reached.end(), [](char is_reached) { return is_reached; });
   if (!all_reached || parts_.size() != parts_in_all) parts_.clear();
+  // A slider must remain before all elements of its line, which may belong to several branches.
+  if (model_.slide_lines.empty() &&
+      std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling& coupling) { return coupling.in_pieces; }))
+    keep_branches_together();
   std::reverse(parts_.begin(), parts_.end());
+}
+
+/// Sorts the list from root to leaves such that each part is followed by all that is outboard of it, smaller branches
+/// first. In the order of elimination, bodies on a beam then come between its elements, so that a line over these
+/// bodies has only few of them in each border.
+void TreeOrder::keep_branches_together() {
+  const int count = static_cast<int>(parts_.size());
+  std::vector<int> reached_by(model_.nodes.size(), -1), parent(count, -1), size(count, 1);
+  for (int p = 0; p < count; ++p) {
+    const TreePart& part = parts_[p];
+    if (part.joint < 0) {
+      parent[p] = reached_by[part.nodes[0]];
+      for (int i = 1; i < part.node_count; ++i)
+        if (dof_.slave_joint[part.nodes[i]] < 0) reached_by[part.nodes[i]] = p;
+      continue;
+    }
+    const JointMap& joint = model_.joints[part.joint];
+    if (joint.master >= 0) parent[p] = reached_by[joint.master];
+    reached_by[joint.slave] = p;
+  }
+  std::vector<std::vector<int>> outboard(count + 1);  // the last one: of the world
+  for (int p = count - 1; p >= 0; --p) {
+    if (parent[p] >= 0) size[parent[p]] += size[p];
+    outboard[parent[p] < 0 ? count : parent[p]].push_back(p);
+  }
+  std::vector<TreePart> sorted;
+  std::vector<int> line = {count};
+  while (!line.empty()) {
+    const int p = line.back();
+    line.pop_back();
+    if (p < count) sorted.push_back(parts_[p]);
+    std::stable_sort(outboard[p].begin(), outboard[p].end(), [&](int a, int b) { return size[a] > size[b]; });
+    line.insert(line.end(), outboard[p].begin(), outboard[p].end());
+  }
+  parts_ = std::move(sorted);
 }
 
 void TreeOrder::place_variables() {
@@ -124,12 +164,32 @@ void TreeOrder::place_closures() {
 void TreeOrder::place_couplings() {
   for (TreePart& part : parts_) part.first_coupling = -1;
   for (std::size_t k = couplings_.size(); k-- > 0;) {
-    auto& [nodes, next] = couplings_[k];
-    if (nodes.size() < 2) continue;
-    int first = completion_[nodes[0]];
-    for (const int node : nodes) first = std::min(first, completion_[node]);
-    next = parts_[first].first_coupling;
+    Coupling& coupling = couplings_[k];
+    if (coupling.nodes.size() < 2 || coupling.in_pieces) continue;
+    int first = completion_[coupling.nodes[0]];
+    for (const int node : coupling.nodes) first = std::min(first, completion_[node]);
+    coupling.next = parts_[first].first_coupling;
     parts_[first].first_coupling = static_cast<int>(k);
+  }
+}
+
+/// Places each piece in the part in which the first of its two nodes is complete, and the factors of the product of low
+/// rank, node by node, where the node is complete. The auxiliary variable is complete with the last of the nodes.
+void TreeOrder::place_pieces() {
+  for (int k = 0; k < static_cast<int>(couplings_.size()); ++k) {
+    const std::vector<int>& nodes = couplings_[k].nodes;
+    const std::vector<std::array<int, 2>>& pairs = model_.force_elements[k]->pieces().pairs;
+    for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
+      const auto [a, b] = pairs[p];
+      if (a < 0 || b < 0 || a == b) continue;  // it couples no nodes
+      parts_[std::min(completion_[nodes[a]], completion_[nodes[b]])].pieces.push_back({k, p});
+    }
+    if (couplings_[k].auxiliary < 0) continue;
+    int& last = completion_[couplings_[k].auxiliary];
+    for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+      parts_[completion_[nodes[i]]].factors.push_back({k, i});
+      last = std::max(last, completion_[nodes[i]]);
+    }
   }
 }
 

@@ -10,17 +10,17 @@ bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
 
 TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
     : model_(model),
-      dof_(dof),
-      blocks_(model, dof),
       order_(model, dof),
+      dof_(order_.dof()),
+      blocks_(model, dof_),
       elements_(order_),
-      bordered_(model, dof, order_, blocks_),
-      values_(dof.scalar_count) {
+      bordered_(model, dof_, order_, blocks_),
+      values_(dof_.scalar_count) {
   joints_.reserve(model.joints.size());
   for (const JointMap& joint : model.joints)
-    joints_.emplace_back(joint, dof.variable_of_joint(static_cast<int>(joints_.size())), dof);
+    joints_.emplace_back(joint, dof_.variable_of_joint(static_cast<int>(joints_.size())), dof_);
   keeps_elements_apart_ = true;
-  for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(blocks_.diagonal(static_cast<int>(v)));
+  for (std::size_t v = 0; v < dof_.size.size(); ++v) diagonal_blocks_.push_back(blocks_.diagonal(static_cast<int>(v)));
   for (std::size_t at = 0; at < blocks_.elements.size(); at += 36) element_blocks_.push_back(&blocks_.elements[at]);
 }
 
@@ -36,6 +36,8 @@ void TreeTangent::set_zero() {
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
   // Most couplings couple fewer nodes than they may.
   for (std::size_t k = 0; k < blocks_.couplings.size(); ++k) {
+    blocks_.pieces[k].set_zero();
+    if (blocks_.couplings[k].size() == 0) continue;
     const Eigen::Index size = 6 * static_cast<Eigen::Index>(order_.coupled_nodes(static_cast<int>(k)).size());
     blocks_.couplings[k].topLeftCorner(size, size).setZero();
   }
@@ -63,6 +65,19 @@ void TreeTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd
   for (std::size_t i = 0; i < nodes.size(); ++i)
     add_to_node(nodes[i], blocks.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
   blocks_.couplings[index].topLeftCorner(blocks.rows(), blocks.cols()) += blocks;
+}
+
+void TreeTangent::add_coupling(int index, const PieceTangent& tangent) {
+  const std::vector<int>& nodes = order_.coupled_nodes(index);
+  const std::vector<std::array<int, 2>>& pairs = model_.force_elements[index]->pieces().pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    for (int i = 0; i < 2; ++i)
+      if (pairs[p][i] >= 0)
+        add_to_node(nodes[pairs[p][i]], tangent.blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * i));
+  TreeBlocks::Pieces& pieces = blocks_.pieces[index];
+  pieces.blocks = tangent.blocks;
+  pieces.left = -tangent.left;
+  pieces.right = tangent.right;
 }
 
 /// The elimination folds; here only the windows of sliders are set.

@@ -37,6 +37,7 @@ class TreeTangent : public TangentBackend {
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   void couple(int index, const int* nodes, int count) override { order_.set_coupling(index, nodes, count); }
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
+  void add_coupling(int index, const PieceTangent& tangent) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
   SlideMaps& slide_maps(int joint) override { return blocks_.slide_maps[joint]; }
   void fold(int joint) override;
@@ -59,9 +60,9 @@ class TreeTangent : public TangentBackend {
   bool substitute_back(Eigen::VectorXd& b);
 
   const Model& model_;
-  const DegreesOfFreedom& dof_;
-  TreeBlocks blocks_;
   TreeOrder order_;
+  const DegreesOfFreedom& dof_;  // with auxiliary variables
+  TreeBlocks blocks_;
   std::unique_ptr<InteriorCondensation> condensation_;  // null unless condense_interiors() was called
   ElementElimination<6> elements_;
   BorderedElimination bordered_;

@@ -33,22 +33,69 @@ std::string table_on(int legs) {
   return text + "</robot>";
 }
 
-int riders_in_all(int legs) {
-  const scene::ReadResult read = scene::read_scene_text(table_on(legs), "table.urdf");
-  const Model model = build_model(*read.scene);
+/// The number of scalars that ride, over all parts, and that of the largest border. `unexpected`: the largest number of
+/// scalars in a border beyond riders, the inboard node, and what lines couple there.
+struct Riders {
+  int in_all = 0, largest_border = 0, unexpected = 0;
+};
+
+Riders riders_of(const std::string& text) {
+  const scene::ReadResult read = scene::read_scene_text(text, "riders.urdf");
+  const Model model = build_model(read.scene.value());
   const DegreesOfFreedom dof(model);
   const TreeOrder order(model, dof);
-  int riders = 0;
-  for (std::size_t p = 0; p < order.parts().size(); ++p) riders += order.most_riders(static_cast<int>(p));
-  return riders;
+  Riders out;
+  for (std::size_t p = 0; p < order.parts().size(); ++p) {
+    const TreePart& part = order.parts()[p];
+    int border = 0;
+    for (int i = 0; i < part.border_count; ++i) border += order.dof().size[order.border(part)[i]];
+    out.in_all += order.most_riders(static_cast<int>(p));
+    out.largest_border = std::max(out.largest_border, border);
+    int own = 6 + 6 * static_cast<int>(part.pieces.size());
+    for (const auto& [coupling, node] : part.factors) own += order.dof().size[order.auxiliary(coupling)];
+    out.unexpected = std::max(out.unexpected, border - own - order.most_riders(static_cast<int>(p)));
+  }
+  return out;
 }
 
 // The legs are leaves, so no other unknowns pass through them. The multipliers of a leg couple only the table and this
 // leg, so the number of riders grows linearly with the number of legs.
 TEST(TreeOrder, VariablesRideOnlyWhereTheyPass) {
-  const int four = riders_in_all(4), eight = riders_in_all(8), sixteen = riders_in_all(16);
+  const int four = riders_of(table_on(4)).in_all, eight = riders_of(table_on(8)).in_all,
+            sixteen = riders_of(table_on(16)).in_all;
   EXPECT_GT(eight, four);
   EXPECT_EQ(sixteen - eight, 2 * (eight - four));
+}
+
+/// Returns a beam with a body at the end of each element, and a line over all bodies.
+std::string beam_with_line(int elements) {
+  std::string text = fmt::format(
+      R"(<robot name="line"><link name="world"/><link name="rod"><beam elements="{}"><centerline><line to="1 0 0"/>
+         </centerline><section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/>
+         </beam></link><joint name="clamp" type="fixed"><parent link="world"/><child link="rod"/></joint>)",
+      elements);
+  std::string guides;
+  for (int i = 1; i <= elements; ++i) {
+    text += fmt::format(R"(<link name="disc{0}"><inertial><mass value="1"/>
+                           <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+                           <joint name="glue{0}" type="fixed"><parent link="rod"/><child link="disc{0}"/>
+                           <origin xyz="{1} 0 0"/></joint>)",
+                        i, static_cast<double>(i) / elements);
+    guides += fmt::format(R"(<via link="disc{}" at="0 0 0.1"/>)", i);
+  }
+  return text + R"(<tendon name="line" ea="1e3">)" + guides + R"(</tendon><winch name="hoist" tendon="line">
+    <drive rotor_inertia="1"/></winch></robot>)";
+}
+
+// Each piece of the line couples two neighbours, and the auxiliary variable couples all of them. Bodies that are
+// numbered behind all elements are eliminated between them.
+TEST(TreeOrder, ALineOverManyBodiesKeepsBordersSmall) {
+  const Riders ten = riders_of(beam_with_line(10)), twenty = riders_of(beam_with_line(20)),
+               forty = riders_of(beam_with_line(40));
+  EXPECT_EQ(forty.in_all - twenty.in_all, 2 * (twenty.in_all - ten.in_all));
+  EXPECT_EQ(forty.largest_border, ten.largest_border);
+  EXPECT_EQ(forty.unexpected, 0);
+  EXPECT_LE(forty.largest_border, 6 + 6 + 2);  // the inboard node, the next body, and both changes of length
 }
 
 constexpr const char* kSlider = R"(<robot name="slider"><link name="world"/>
