@@ -122,9 +122,12 @@ double Tendon::paid_out(const Poses& poses) const {
   return out;
 }
 
+double Tendon::straight_rest(const Poses& poses, const Memory& memory, int part) const {
+  return shares_[part] * memory.function() - memory.rims_at_start(part) + (part == 0 ? paid_out(poses) : 0);
+}
+
 TendonLengths Tendon::lengths(const Poses& poses, const Memory& memory, int part) const {
-  TendonLengths out;
-  out.rest = shares_[part] * memory.function() - memory.rims_at_start(part) + (part == 0 ? paid_out(poses) : 0);
+  TendonLengths out{0, straight_rest(poses, memory, part)};
   for_each_span(memory, part, [&](const Span& span) {
     const PieceState state = span.piece.follow(poses.of(span.piece), memory.angles(span.first, span.second));
     out.length += state.value(span.length);
@@ -143,11 +146,9 @@ double Tendon::energy(const State& state, const double* memory) const {
   return energy(Poses(state), Memory{memory, parts_});
 }
 
-void Tendon::find_angles(const Poses& poses, const NewMemory& memory, bool is_near) const {
+void Tendon::find_angles(const Poses& poses, const NewMemory& memory) const {
   for_each_span(memory, [&](const Span& span) {
-    const PiecePoses here = poses.of(span.piece);
-    const PieceState near = memory.angles(span.first, span.second);
-    const PieceState state = is_near ? span.piece.follow(here, near) : span.piece.find(here, near);
+    const PieceState state = span.piece.find(poses.of(span.piece), memory.angles(span.first, span.second));
     memory.goes(span.first) = state.begin;
     memory.comes(span.second) = state.end;
   });
@@ -168,7 +169,7 @@ void Tendon::carry(const ForceElement& before, const double* old_numbers, const 
   memory.function() = function;
   for (int part = 0; part < parts_; ++part)
     memory.rims_at_start(part) += shares_[part] * function - other->shares_[part] * old.function();
-  find_angles(Poses(state), memory, false);
+  find_angles(Poses(state), memory);
   find_touched(Poses(state), memory);
 }
 
@@ -177,7 +178,7 @@ void Tendon::begin(const Poses& poses, double function, const NewMemory& memory)
   memory.function() = function;
   const int count = static_cast<int>(plan_.guides.size());
   for (int i = 0; i < count; ++i) memory.touched(i) = 1;
-  find_angles(poses, memory, false);
+  find_angles(poses, memory);
   for (int i = 0; i < count; ++i) {
     const GuidePlace& place = plan_.guides[i].place;
     const double wrap = plan_.guides[i].wrap;
@@ -190,7 +191,8 @@ void Tendon::begin(const Poses& poses, double function, const NewMemory& memory)
   });
 }
 
-void Tendon::find_touched(const Poses& poses, const NewMemory& memory) const {
+bool Tendon::find_touched(const Poses& poses, const NewMemory& memory) const {
+  bool has_changed = false;
   const int last = static_cast<int>(plan_.guides.size()) - 1;
   for (int i = 1; i < last; ++i) {
     const GuidePlace& place = plan_.guides[i].place;
@@ -210,8 +212,10 @@ void Tendon::find_touched(const Poses& poses, const NewMemory& memory) const {
       if (!(place.sense * (to - from) > 0)) continue;
       memory.touched(i) = 1;
     }
-    find_angles(poses, memory, false);  // those of the neighbours have changed
+    has_changed = true;
+    find_angles(poses, memory);  // those of the neighbours have changed
   }
+  return has_changed;
 }
 
 // ---------------------------------------------------------------- small motions and output

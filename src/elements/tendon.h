@@ -84,6 +84,7 @@ class Tendon : public ForceElement {
   using Memory = MemoryOf<const double>;
   using NewMemory = MemoryOf<double>;
   struct Span;  // a straight piece between two guides that the line touches
+  struct MovedSpan;
   struct Scratch;
   struct PartForces;  // sums of the derivatives of the lengths of one part
   class Poses;        // of all nodes, from a state or a step
@@ -101,21 +102,25 @@ class Tendon : public ForceElement {
   /// The same for one part.
   template <class Visit>
   void for_each_span(const Memory& memory, int part, const Visit& visit) const;
+  /// The rest length of a part, but for what its rims have wound up [m].
+  double straight_rest(const Poses& poses, const Memory& memory, int part) const;
   TendonLengths lengths(const Poses& poses, const Memory& memory, int part) const;
   FunctionStep function_of(const ForceStep& step) const;
   double paid_out(const Poses& poses) const;
   double energy(const Poses& poses, const Memory& memory) const;
-  /// Sets the angles to those at `poses` that are nearest to the present ones. `is_near`: they differ little.
-  void find_angles(const Poses& poses, const NewMemory& memory, bool is_near) const;
+  /// Sets the angles to those at `poses` that are nearest to the present ones.
+  void find_angles(const Poses& poses, const NewMemory& memory) const;
   void begin(const Poses& poses, double function, const NewMemory& memory) const;
-  /// Lets the line leave pulleys and touch others.
-  void find_touched(const Poses& poses, const NewMemory& memory) const;
-  TendonPartStep part_step(const ForceStep& step, const Memory& begin, const Memory& end, int part) const;
+  /// Lets the line leave pulleys and touch others. Returns whether it has done so.
+  bool find_touched(const Poses& poses, const NewMemory& memory) const;
+  void find_spans(const ForceStep& step, const Memory& begin, const NewMemory& end,
+                  std::vector<MovedSpan>& spans) const;
+  void find_part_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const;
+  void find_rate(const ForceStep& step, const Memory& begin, const Memory& end, int part, TendonPartStep& out) const;
   double contact_angle(const Poses& poses, const Memory& memory, int guide) const;
   Scratch& scratch() const;
   bool find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const;
-  void add_directions(const ForceStep& step, const Memory& begin, const Memory& end, const TendonSlip& slip,
-                      std::vector<PartForces>& directions, std::vector<PartForces>& slopes, ForceAction& action) const;
+  void add_directions(const ForceStep& step, Scratch& scratch, ForceAction& action) const;
   void add_slope(const Span& span, double force, const Matrix12& slope, ForceAction& action) const;
   void add_forces(TendonSlip& slip, const std::vector<PartForces>& directions, const std::vector<PartForces>& slopes,
                   ForceAction& action) const;

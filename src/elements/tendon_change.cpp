@@ -1,4 +1,6 @@
 // The change of a piece of a line over a step.
+#include <type_traits>
+
 #include "elements/tendon_geometry.h"
 #include "elements/tendon_piece.h"
 
@@ -88,7 +90,10 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
                     const PieceState& before, const PieceState& after, const PieceWeights& weights, bool at_end) {
   Change<S> out;
   const Angles begin{before.begin, before.end}, end{after.begin, after.end};
-  out.end = functional(a, b, end_a, end_b, weights, end);
+  if constexpr (std::is_same_v<S, double>)
+    out.end = after.value(weights);
+  else
+    out.end = functional(a, b, end_a, end_b, weights, end);
   const double weight = at_end ? 1 : 0.5;
   const GuideFrame<S> mean_a = mixed(begin_a, end_a, weight), mean_b = mixed(begin_b, end_b, weight);
   if (!a.is_circle() && !b.is_circle() && !at_end) {
@@ -103,7 +108,7 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
     return out;
   }
   const Angles middle{(1 - weight) * begin.begin + weight * end.begin, (1 - weight) * begin.end + weight * end.end};
-  const Angles mean = tangents_near(a, b, mean_a.values(), mean_b.values(), middle);
+  const Angles mean = tangents_near(a, b, mean_a.values(), mean_b.values(), middle).angles;
   const VectorGradient<S> gradient = vector_gradient(a, b, mean_a, mean_b, weights, mean);
   out.direction = gradient.on_nodes(mean_a, mean_b);
   if (at_end) return out;

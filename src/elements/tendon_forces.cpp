@@ -13,11 +13,44 @@ FunctionStep Tendon::function_of(const ForceStep& step) const {
   return step.functions[0];
 }
 
-/// The lengths of a part over the step, without slip.
-TendonPartStep Tendon::part_step(const ForceStep& step, const Memory& begin, const Memory& end, int part) const {
-  TendonPartStep out{lengths(Poses(step.begin), begin, part), lengths(Poses(step.end), end, part), step.duration,
-                     step.at_end};
-  if (!step.at_end || step.duration == 0 || plan_.law.damping == 0) return out;
+/// Finds all spans at both ends of the step, and the angles at its end.
+void Tendon::find_spans(const ForceStep& step, const Memory& begin, const NewMemory& end,
+                        std::vector<MovedSpan>& spans) const {
+  const Poses from(step.begin), to(step.end);
+  spans.clear();
+  for_each_span(begin, [&](const Span& span) {
+    const auto at = [&](const Poses& poses) {
+      const PiecePoses here = poses.of(span.piece);
+      return PieceEnd{here, span.piece.follow(here, begin.angles(span.first, span.second))};
+    };
+    spans.push_back({span, at(from), at(to)});
+    end.goes(span.first) = spans.back().end.state.begin;
+    end.comes(span.second) = spans.back().end.state.end;
+  });
+}
+
+/// Finds the lengths of all parts over the step, without slip, and the data of the rule for rates.
+void Tendon::find_part_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const {
+  const Poses from(step.begin), to(step.end);
+  std::vector<TendonPartStep>& parts = scratch.part_steps;
+  parts.clear();
+  for (int part = 0; part < parts_; ++part)
+    parts.push_back(
+        {{0, straight_rest(from, begin, part)}, {0, straight_rest(to, end, part)}, step.duration, step.at_end});
+  for (const MovedSpan& moved : scratch.spans) {
+    TendonPartStep& part = parts[moved.span.part];
+    for (const auto& [lengths, at] : {std::pair(&part.begin, &moved.begin), std::pair(&part.end, &moved.end)}) {
+      lengths->length += at->state.value(moved.span.length);
+      lengths->rest += at->state.value(moved.span.rest);
+    }
+  }
+  if (!step.at_end || step.duration == 0 || plan_.law.damping == 0) return;
+  for (int part = 0; part < parts_; ++part) find_rate(step, begin, end, part, parts[part]);
+}
+
+/// The rate at the end of the step, by the rule for rates.
+void Tendon::find_rate(const ForceStep& step, const Memory& begin, const Memory& end, int part,
+                       TendonPartStep& out) const {
   const double by_function = shares_[part] * (end.function() - begin.function());
   CoordinateStep change;
   change.begin_rate = stretch_rate(Poses(step.begin), begin, part, step.velocities) - begin.slip_rate(part);
@@ -27,7 +60,6 @@ TendonPartStep Tendon::part_step(const ForceStep& step, const Memory& begin, con
   change.increment = out.end.length - out.end.rest - out.begin.length + out.begin.rest + by_function;
   out.rate = rate_of(change) - by_function / step.duration;
   out.rate_slope = rate_slope(change);
-  return out;
 }
 
 /// The angle by which the line turns at a guide [rad].
@@ -43,12 +75,11 @@ double Tendon::contact_angle(const Poses& poses, const Memory& memory, int guide
 
 /// Finds what the parts do. Returns false if no slip is found with which they are in balance.
 bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const {
-  auto& [slip, parts, ratios, directions, slopes, gradient] = scratch;
-  parts.clear(), ratios.clear();
-  for (int part = 0; part < parts_; ++part) {
-    parts.push_back(part_step(step, begin, end, part));
-    if (!(parts.back().end.rest > 0)) return false;  // nothing is left of the line
-  }
+  const std::vector<TendonPartStep>& parts = scratch.part_steps;
+  std::vector<double>& ratios = scratch.ratios;
+  ratios.clear();
+  for (const TendonPartStep& part : parts)
+    if (!(part.end.rest > 0)) return false;  // nothing is left of the line
   for (int i = 1; i + 1 < static_cast<int>(plan_.guides.size()); ++i) {
     const TendonGuide& guide = plan_.guides[i];
     if (!guide.divides()) continue;
@@ -57,26 +88,21 @@ bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory
         guide.grips ? 0 : 0.5 * (contact_angle(Poses(step.begin), begin, i) + contact_angle(Poses(step.end), end, i));
     ratios.push_back(guide.grips ? TendonSlip::kNever : std::exp(guide.friction * angle));
   }
-  return slip.solve(plan_.law, parts, ratios);
+  return scratch.slip.solve(plan_.law, parts, ratios);
 }
 
 /// Sums up the directions of all parts, and the derivatives of their lengths at the end. Adds the derivatives of the
 /// directions to the tangent.
-void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Memory& end, const TendonSlip& slip,
-                            std::vector<PartForces>& directions, std::vector<PartForces>& slopes,
-                            ForceAction& action) const {
-  const Poses from(step.begin), to(step.end);
+void Tendon::add_directions(const ForceStep& step, Scratch& scratch, ForceAction& action) const {
+  auto& directions = scratch.directions;
+  auto& slopes = scratch.slopes;
   const bool with_slope = action.wants_tangent();
-  for_each_span(begin, [&](const Span& span) {
-    if (span.first_node == span.second_node) return;  // on one body: nothing changes
-    const auto at = [&](const Poses& poses, const Memory& memory) {
-      const PiecePoses here = poses.of(span.piece);
-      return PieceEnd{here, span.piece.follow(here, memory.angles(span.first, span.second))};
-    };
-    const PieceEnd old = at(from, begin), now = at(to, end);
+  for (const MovedSpan& moved : scratch.spans) {
+    const Span& span = moved.span;
+    if (span.first_node == span.second_node) continue;  // on one body: nothing changes
     const auto add = [&](const PieceWeights& weights, double force, Eigen::VectorXd& direction,
                          Eigen::VectorXd& slope) {
-      const PieceChange change = span.piece.change(old, now, weights, step.at_end, with_slope);
+      const PieceChange change = span.piece.change(moved.begin, moved.end, weights, step.at_end, with_slope);
       const int nodes[2] = {span.first_node, span.second_node};
       for (int i = 0; i < 2; ++i) {
         if (nodes[i] < 0) continue;
@@ -86,11 +112,11 @@ void Tendon::add_directions(const ForceStep& step, const Memory& begin, const Me
       }
       if (with_slope) add_slope(span, force, change.direction_slope, action);
     };
-    const TendonStep& line = slip.steps()[span.part];
+    const TendonStep& line = scratch.slip.steps()[span.part];
     add(span.length, line.tension, directions[span.part].length, slopes[span.part].length);
     if (span.winds && !plan_.has_tension)
       add(span.rest, line.release, directions[span.part].rest, slopes[span.part].rest);
-  });
+  }
   for (std::size_t i = 0; i < plan_.winches.size(); ++i)
     if (winch_nodes_[i] >= 0)
       for (Eigen::VectorXd* sum : {&directions[0].rest, &slopes[0].rest})
@@ -107,26 +133,27 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   std::copy_n(step.memory, memory_size(), step.new_memory);
   const FunctionStep function = function_of(step);
   end.function() = function.end;
-  find_angles(Poses(step.end), end, true);
 
   Scratch& scratch = this->scratch();
-  auto& [slip, part_steps, ratios, directions, slopes, gradient] = scratch;
-  directions.resize(parts_), slopes.resize(parts_);
-  for (std::vector<PartForces>* sums : {&directions, &slopes})
+  TendonSlip& slip = scratch.slip;
+  for (std::vector<PartForces>* sums : {&scratch.directions, &scratch.slopes}) {
+    sums->resize(parts_);
     for (PartForces& sum : *sums) sum.reset(action.residual.size());
+  }
+  find_spans(step, begin, end, scratch.spans);
+  find_part_steps(step, begin, end, scratch);
   if (plan_.has_tension) {
     slip.set_tension(parts_, step.load_factor * std::max(step.at_end ? function.end : function.mean, 0.0));
   } else if (!find_steps(step, begin, end, scratch)) {
     action.residual.setConstant(std::numeric_limits<double>::quiet_NaN());  // the step fails
     return;
   }
-  add_directions(step, begin, end, slip, directions, slopes, action);
-  add_forces(slip, directions, slopes, action);
+  add_directions(step, scratch, action);
+  add_forces(slip, scratch.directions, scratch.slopes, action);
   for (int part = 0; part < parts_; ++part) {
     const TendonStep& line = slip.steps()[part];
     if (plan_.has_tension) {
-      action.work -=
-          line.tension * (lengths(Poses(step.end), end, part).length - lengths(Poses(step.begin), begin, part).length);
+      action.work -= line.tension * (scratch.part_steps[part].end.length - scratch.part_steps[part].begin.length);
       continue;
     }
     action.work += line.release * shares_[part] * (end.function() - begin.function());
@@ -136,9 +163,12 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   }
   if (!may_lift_) return;
   // Leaving and touching pulleys changes the length by third powers of small angles. The energy is counted.
-  const double before = energy(Poses(step.end), end);
-  find_touched(Poses(step.end), end);
-  action.dissipated += before - energy(Poses(step.end), end);
+  if (!find_touched(Poses(step.end), end) || plan_.has_tension) return;
+  for (int part = 0; part < parts_; ++part) {
+    const TendonLengths& line = scratch.part_steps[part].end;
+    action.dissipated += plan_.law.energy({line.length, line.rest + slip.gain(part)});
+  }
+  action.dissipated -= energy(Poses(step.end), end);
 }
 
 /// Adds the change of a force along the direction of a span.

@@ -84,14 +84,16 @@ GuideFrame<S> mixed(const GuideFrame<double>& begin, const GuideFrame<S>& end, d
 /// The place where a line meets a circle: the unit vector from the centre, and its derivative by the angle.
 template <class S>
 struct Rim {
+  S cos{1}, sin{0};
   Eigen::Matrix<S, 3, 1> out, along;
 
+  Rim() = default;  ///< of a point, whose vectors are not used
   Rim(const GuideFrame<S>& frame, const S& angle) {
     using std::cos, std::sin;
-    const S c = cos(angle), s = sin(angle);
+    this->cos = cos(angle), this->sin = sin(angle);
     for (int i = 0; i < 3; ++i) {
-      out[i] = c * frame.first[i] + s * frame.second[i];
-      along[i] = c * frame.second[i] - s * frame.first[i];
+      out[i] = this->cos * frame.first[i] + this->sin * frame.second[i];
+      along[i] = this->cos * frame.second[i] - this->sin * frame.first[i];
     }
   }
 };
@@ -106,10 +108,14 @@ struct Chord {
   std::array<std::array<S, 2>, 2> slopes{{{S(1), S(0)}, {S(0), S(1)}}};
 
   Chord(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from, const GuideFrame<S>& to, const S& begin,
-        const S& end)
-      : first(from, begin), second(to, end) {
-    for (int i = 0; i < 3; ++i)
-      way[i] = to.centre[i] + b.radius * second.out[i] - from.centre[i] - a.radius * first.out[i];
+        const S& end) {
+    if (a.is_circle()) first = Rim<S>(from, begin);
+    if (b.is_circle()) second = Rim<S>(to, end);
+    for (int i = 0; i < 3; ++i) {
+      way[i] = to.centre[i] - from.centre[i];
+      if (a.is_circle()) way[i] -= a.radius * first.out[i];
+      if (b.is_circle()) way[i] += b.radius * second.out[i];
+    }
     if (a.is_circle()) {
       open[0] = dot(way, first.out);
       slopes[0][0] = dot(way, first.along) - a.radius * dot(first.along, first.out);
@@ -156,7 +162,7 @@ inline Angles rough_tangents(const GuidePlace& a, const GuidePlace& b, const Gui
   return out;
 }
 
-/// The angles after a step of Newton's method towards the tangent points. From the solution it gives their derivatives.
+/// The angles after a step of Newton's method towards the tangent points.
 template <class S>
 std::array<S, 2> newton_step(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from,
                              const GuideFrame<S>& to, const Angles& angles) {
@@ -168,11 +174,27 @@ std::array<S, 2> newton_step(const GuidePlace& a, const GuidePlace& b, const Gui
           S(angles.end - (chord.open[1] * s00 - chord.open[0] * s10) / determinant)};
 }
 
-/// The angles of the tangent points by Newton's method. NaN if it does not converge, or to points where the line would
-/// run the other way round a circle.
-inline Angles tangents_near(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& from,
-                            const GuideFrame<double>& to, Angles out) {
-  if (!a.is_circle() && !b.is_circle()) return out;
+/// The angles at a solution, with their derivatives: the values are the solution's, which a step would not improve.
+inline std::array<double, 2> with_derivatives(const GuidePlace&, const GuidePlace&, const GuideFrame<double>&,
+                                              const GuideFrame<double>&, const Angles& angles) {
+  return {angles.begin, angles.end};
+}
+inline std::array<Dual, 2> with_derivatives(const GuidePlace& a, const GuidePlace& b, const GuideFrame<Dual>& from,
+                                            const GuideFrame<Dual>& to, const Angles& angles) {
+  return newton_step(a, b, from, to, angles);
+}
+
+/// Tangent points, and the vector from the first to the second.
+struct Tangent {
+  Angles angles;
+  Vector3 way;
+};
+
+/// The tangent points by Newton's method. NaN if it does not converge, or to points where the line would run the other
+/// way round a circle.
+inline Tangent tangents_near(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& from,
+                             const GuideFrame<double>& to, Angles out) {
+  if (!a.is_circle() && !b.is_circle()) return {out, to.centre - from.centre};
   for (int iteration = 0; iteration < 10; ++iteration) {
     const std::array<double, 2> next = newton_step<double>(a, b, from, to, out);
     const double size = std::abs(next[0] - out.begin) + std::abs(next[1] - out.end);
@@ -181,13 +203,13 @@ inline Angles tangents_near(const GuidePlace& a, const GuidePlace& b, const Guid
       const Chord<double> chord(a, b, from, to, out.begin, out.end);
       const bool is_turned = (a.is_circle() && a.sense * dot(chord.way, chord.first.along) < 0) ||
                              (b.is_circle() && b.sense * dot(chord.way, chord.second.along) < 0);
-      if (!is_turned) return out;
+      if (!is_turned) return {out, chord.way};
       break;
     }
     if (!(size < kPi)) break;
   }
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return {none, none};
+  return {{none, none}, Vector3::Constant(none)};
 }
 
 /// The length of a piece. A piece of length zero has no direction; so a length is never smaller than kShortest, and all
@@ -233,8 +255,7 @@ template <class S>
 VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from,
                                   const GuideFrame<S>& to, const PieceWeights& weights, const Angles& angles) {
   using V = Eigen::Matrix<S, 3, 1>;
-  using std::cos, std::sin;
-  const std::array<S, 2> at = newton_step(a, b, from, to, angles);
+  const std::array<S, 2> at = with_derivatives(a, b, from, to, angles);
   const Chord<S> chord(a, b, from, to, at[0], at[1]);
   const S length = length_of(chord.way);
   const V unit = chord.way / length;
@@ -252,10 +273,10 @@ VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, cons
   const V on_first = -a.radius * out.by_way - first * chord.way;
   const V on_second = b.radius * out.by_way - second * chord.way;
   const S zero(0);
-  out.by_first[0] = (a.is_circle() ? S(cos(at[0])) : zero) * on_first;
-  out.by_first[1] = (a.is_circle() ? S(sin(at[0])) : zero) * on_first;
-  out.by_second[0] = (b.is_circle() ? S(cos(at[1])) : zero) * on_second;
-  out.by_second[1] = (b.is_circle() ? S(sin(at[1])) : zero) * on_second;
+  out.by_first[0] = (a.is_circle() ? chord.first.cos : zero) * on_first;
+  out.by_first[1] = (a.is_circle() ? chord.first.sin : zero) * on_first;
+  out.by_second[0] = (b.is_circle() ? chord.second.cos : zero) * on_second;
+  out.by_second[1] = (b.is_circle() ? chord.second.sin : zero) * on_second;
   return out;
 }
 
@@ -263,7 +284,7 @@ VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, cons
 template <class S>
 S functional(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from, const GuideFrame<S>& to,
              const PieceWeights& weights, const Angles& angles) {
-  const std::array<S, 2> at = newton_step(a, b, from, to, angles);
+  const std::array<S, 2> at = with_derivatives(a, b, from, to, angles);
   const Chord<S> chord(a, b, from, to, at[0], at[1]);
   S out = weights.straight * length_of(chord.way);
   if (a.is_circle()) out += weights.begin * at[0];

@@ -55,6 +55,12 @@ struct Tendon::Span {
   bool winds;                   // whether `rest` is not zero
 };
 
+/// A span at both ends of a step.
+struct Tendon::MovedSpan {
+  Span span;
+  PieceEnd begin, end;
+};
+
 /// Derivatives of the lengths of a part by {displacement, spin} of all nodes of reach().
 struct Tendon::PartForces {
   Eigen::VectorXd length, rest;
@@ -66,6 +72,7 @@ struct Tendon::PartForces {
 /// different sizes do not allocate in turns.
 struct Tendon::Scratch {
   TendonSlip slip;
+  std::vector<MovedSpan> spans;
   std::vector<TendonPartStep> part_steps;
   std::vector<double> ratios;
   std::vector<PartForces> directions, slopes;

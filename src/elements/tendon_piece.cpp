@@ -23,9 +23,8 @@ PieceState TendonPiece::follow(const PiecePoses& poses, const PieceState& near) 
 PieceState TendonPiece::state_at(const PiecePoses& poses, double begin, double end, const PieceState& near) const {
   const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
                                    to = tendon::frame_of(second_, poses.second);
-  const tendon::Angles angles = tendon::tangents_near(first_, second_, from, to, {begin, end});
-  const tendon::Chord<double> chord(first_, second_, from, to, angles.begin, angles.end);
-  return {tendon::length_of(chord.way), nearest_turn(angles.begin, near.begin), nearest_turn(angles.end, near.end)};
+  const auto [angles, way] = tendon::tangents_near(first_, second_, from, to, {begin, end});
+  return {tendon::length_of(way), nearest_turn(angles.begin, near.begin), nearest_turn(angles.end, near.end)};
 }
 
 Vector12 TendonPiece::gradient(const PiecePoses& poses, const PieceState& here, const PieceWeights& weights) const {
