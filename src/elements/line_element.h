@@ -1,8 +1,6 @@
 #pragma once
 /// Base class of force elements that act along the straight line between two points.
 
-#include <array>
-
 #include "joints/coordinate_step.h"
 #include "model/force_element.h"
 #include "model/state.h"
@@ -18,9 +16,7 @@ struct LineTension {
 };
 
 /// A force element that pulls two points together, or pushes them apart. Derived classes define the tension as a
-/// function of the length. For schemes with mean forces, let l be the mean of the lengths at both ends of the step, and
-/// d that of the distance vectors. The force is tension / l * d. Its work is exactly -tension times the change of the
-/// length, and it does not change momenta.
+/// function of the length. Over a step it acts as LineStep says.
 class LineElement : public ForceElement {
  public:
   /// At least one of the points must be on a node, and not both on the same one.
@@ -47,13 +43,6 @@ class LineElement : public ForceElement {
   virtual LineTension damper(double rate) const = 0;
 
  private:
-  struct Ends;
-  /// `nodes`: poses of all nodes, or a state.
-  template <class Nodes>
-  Ends ends(const Nodes& nodes) const;
-  /// Returns the derivative of the length with respect to {displacement, spin} of child and parent, 6 entries each.
-  Eigen::Matrix<double, 12, 1> gradient(const Ends& ends) const;
-
   NodePoint child_, parent_;  // the child is always on a node
 };
 
