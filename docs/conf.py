@@ -68,8 +68,8 @@ CONTENTS = {
     ],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
-        ("", """beam joints beyond newton tree planar stops drives lines contact linearisation sensitivities accuracy
-            tuning page"""),
+        ("", """beam joints beyond newton tree planar stops drives lines oil contact linearisation
+            sensitivities accuracy tuning page"""),
     ],
 }
 

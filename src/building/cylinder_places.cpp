@@ -50,7 +50,9 @@ class CylinderPlacer {
     scene::SceneDescription& scene = placed.scene;
     find_named(scene.joints, cylinder.name + "_hinge").origin.orientation =
         from.orientation.conjugate() * Quaternion(axes).normalized();
-    set_length(cylinder, length, where, scene);
+    set_length(cylinder.name, length, where + "its length at the start", scene);
+    if (!cylinder.pump.empty())
+      set_length(cylinder.pump, length, where + "the length that its pump has filled at the start", scene);
     warn_of_limits(find_named(scene.joints, cylinder.name), length, placed.warnings);
     const double radius = cylinder.barrel.radius.value_or(kBarrelRadius * length);
     add_shape(cylinder.barrel, 1, length, radius, kBarrelColor, find_named(scene.links, cylinder.name + "_barrel"));
@@ -93,20 +95,21 @@ class CylinderPlacer {
     return best.norm() > 1e-6 ? Vector3(best.normalized()) : Vector3(x.unitOrthogonal());
   }
 
-  /// Makes the length the initial position of the cylinder's joint.
-  void set_length(const scene::CylinderDescription& cylinder, double length, const std::string& where,
+  /// Makes the length the initial position of a coordinate. `what`: it is, for messages.
+  void set_length(const std::string& coordinate, double length, const std::string& what,
                   scene::SceneDescription& scene) const {
     for (const scene::PrescribedMotion& motion : scene.motions)
-      if (motion.coordinate == cylinder.name &&
+      if (motion.coordinate == coordinate &&
           !(std::abs(motion.position(0.0) - length) <= kLargestMismatch * tree_.extent()))
-        throw ModelError(fmt::format("{}its length at the start is {:.10g} m, but its motion begins at {:.10g}", where,
-                                     length, motion.position(0.0)));
+        throw ModelError(
+            fmt::format("{} is {:.10g} m, but its motion begins at {:.10g}", what, length, motion.position(0.0)));
     for (scene::InitialJoint& initial : scene.initial_joints)
-      if (initial.coordinate == cylinder.name) {
+      if (initial.coordinate == coordinate) {
         initial.position = length;
         return;
       }
-    scene.initial_joints.push_back({cylinder.name, length, 0, cylinder.location});
+    const auto& joint = find_named(scene.joints, coordinate);
+    scene.initial_joints.push_back({coordinate, length, 0, joint.location});
   }
 
   static void warn_of_limits(const scene::JointDescription& joint, double length, scene::Diagnostics& warnings) {

@@ -86,7 +86,7 @@ bool has_winches(const scene::SceneDescription& scene) {
   throw ModelError(
       text + scene.file + ": give the links beyond these joints an <inertial> or a <beam>, " + start +
       "or hold those with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)" +
-      (has_winches(scene) ? "; a winch gets its inertia by <drive rotor_inertia>" : ""));
+      (has_winches(scene) ? "; a winch or a pump gets its inertia by <drive rotor_inertia>" : ""));
 }
 
 /// The scene with constant motions of these coordinates, instead of anything else that it says about them.

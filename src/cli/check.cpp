@@ -103,11 +103,12 @@ void print_joints(const Simulation& simulation) {
       if (hinge.is_hidden && hinge.child == joint.parent) joint.parent = hinge.parent, kind = "cylinder";
     for (const scene::JointDescription& pin : scene.loop_joints)
       if (pin.is_hidden && pin.parent == joint.child) joint.child = pin.child;
-    // A winch is a row with its tendon.
+    // A winch is a row with its tendon, a pump one with its cylinder.
     for (const auto& element : simulation.scene().force_elements)
       for (const scene::LinkPoint& point : element->points())
         if (point.attribute == scene::kReel && point.link == joint.child)
-          kind = "winch", joint.parent = fmt::format("{} {}", element->kind(), element->name), joint.child = "-";
+          kind = std::string_view(element->kind()) == "tendon" ? "winch" : "pump",
+          joint.parent = fmt::format("{} {}", element->kind(), element->name), joint.child = "-";
     fmt::print("{:<24} {:<12} {:<20} {:<20} {}\n", joint.name, kind, joint.parent, joint.child,
                scene::coordinate_suffixes(joint).size());
   }

@@ -27,7 +27,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
     if ((!is_plain && !element->suits_all_schemes()) || (scheme.is_composition && !element->suits_backward_steps()))
       throw ModelError(
           fmt::format("<integrator>: scheme '{}' has no <{}>{}; take one of the energy-momentum family, such as em",
-                      scheme.name, element->kind(), element->suits_all_schemes() ? " with friction" : ""));
+                      scheme.name, element->kind(), element->suits_all_schemes() ? " with friction or valves" : ""));
   if (scheme.hht != HhtForm::None)
     throw ModelError(
         fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",

@@ -231,7 +231,7 @@ class ForceElement {
   /// family needs, and does not suit backward steps.
   virtual bool suits_all_schemes() const { return true; }
   /// Whether the element works with backward steps (of composition schemes). They would undo the dissipation of
-  /// friction.
+  /// friction, and valves would let in or out what only the steps between need.
   virtual bool suits_backward_steps() const { return suits_all_schemes(); }
 
   // ---- output

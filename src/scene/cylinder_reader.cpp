@@ -69,6 +69,11 @@ void add_parts(const ReadCylinder& read, SceneDescription& scene) {
   scene.joints.push_back(travel);
   scene.loop_joints.push_back(pin);
   scene.cylinders.push_back(cylinder);
+  if (!read.hydraulics) return;
+  auto oil = std::make_shared<HydraulicsDescription>(*read.hydraulics->oil);
+  oil->barrel = names.barrel;
+  oil->rod = names.rod;
+  scene.force_elements.push_back(std::move(oil));
 }
 
 /// Lines of names that are taken.
@@ -88,8 +93,8 @@ ReadCylinder read_cylinder(const XmlElement& unnamed) {
   cylinder.location = unnamed.location();
   const XmlElement element = unnamed.with_name(cylinder.name);
   element.expect_only({"name", "from", "from_at", "to", "to_at"},
-                      {"limit", "dynamics", "friction", "barrel", "rod", "spring", "drive", "servo"});
-  element.expect_at_most_one({"barrel", "rod", "spring", "drive", "servo"});
+                      {"limit", "dynamics", "friction", "barrel", "rod", "spring", "drive", "servo", "hydraulics"});
+  element.expect_at_most_one({"barrel", "rod", "spring", "drive", "servo", "hydraulics"});
   cylinder.from = element.name("from").value_or("");
   cylinder.to = element.name("to").value_or("");
   cylinder.from_at = element.vector("from_at", cylinder.from_at);
@@ -99,6 +104,10 @@ ReadCylinder read_cylinder(const XmlElement& unnamed) {
   out.travel = joint_between(cylinder.name, JointKind::Prismatic, "", "", cylinder.location);
   out.travel.is_hidden = false;
   read_travel(element, out.travel, kNonNegative);
+  if (const std::optional<XmlElement> hydraulics = element.child("hydraulics")) {
+    out.hydraulics = read_hydraulics(*hydraulics, out.travel);
+    if (out.hydraulics->pump) cylinder.pump = out.hydraulics->pump->name;
+  }
   return out;
 }
 
@@ -136,7 +145,7 @@ void add_cylinders(const std::vector<ReadCylinder>& cylinders, SceneDescription&
     if (is_whole && findings.error_count() == errors)
       add_parts(read, scene);
     else
-      unreadable.insert({cylinder.name, names.barrel, names.rod, names.hinge, names.pin});
+      unreadable.insert({cylinder.name, names.barrel, names.rod, names.hinge, names.pin, cylinder.pump});
   }
 }
 

@@ -19,11 +19,12 @@ constexpr NumberRange kEfficiency{"> 0 and at most 1", [](double x) { return x >
 /// Relative difference up to which two gear ratios count as equal: files may give them with few digits.
 constexpr double kSameRatio = 1e-6;
 
-/// The name of the coordinate on which an element acts: its `joint`, or the <cylinder> or <winch> whose child it is.
+/// The name of the coordinate on which an element acts: its `joint`, or the <cylinder>, <winch> or <pump> whose
+/// child it is.
 std::string coordinate_of(const XmlElement& element) {
   const tinyxml2::XMLElement* parent = element.xml().Parent() ? element.xml().Parent()->ToElement() : nullptr;
   const std::string_view tag = parent ? parent->Name() : "";
-  if (tag != "cylinder" && tag != "winch") return element.text("joint").value_or("");
+  if (tag != "cylinder" && tag != "winch" && tag != "pump") return element.text("joint").value_or("");
   if (element.has("joint"))
     element.attribute_error("joint", "it acts on its <" + std::string(tag) + ">; leave this out");
   const char* name = parent->Attribute("name");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/hydraulics_reader.h"
 #include "scene/start.h"
 #include "scene/xml_element.h"
 
@@ -41,9 +42,10 @@ void free_play(JointDescription& joint);
 struct ReadCylinder {
   CylinderDescription cylinder;
   JointDescription travel;
+  std::optional<ReadHydraulics> hydraulics;
 };
-/// Reads <cylinder> without its children <spring>, <drive> and <servo>. The name and the location are set even if there
-/// are errors.
+/// Reads <cylinder> without its children <spring>, <drive> and <servo>, and those of its pump. The name and the
+/// location are set even if there are errors.
 ReadCylinder read_cylinder(const XmlElement& cylinder);
 /// Adds cylinders and their parts to the scene, whose other links and joints must be complete. Names of cylinders with
 /// errors, and those of their parts, are added to `unreadable`.
@@ -80,6 +82,8 @@ ForceElementDescriptions::iterator find_tendon(SceneDescription& scene, const st
 /// Adds for each winch a joint on the scene's root link, which must be settled, that carries a reel, the link
 /// NAME_reel, and lets that pay out the winch's tendon. The scene's other links, joints and tendons must be complete.
 void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene, Findings& findings);
+/// The same for the pumps of cylinders. The scene's other links, joints and cylinders must be complete.
+void add_pumps(const std::vector<ReadCylinder>& cylinders, SceneDescription& scene, Findings& findings);
 
 Sensor read_sensor(const XmlElement& sensor);
 /// Gives sensors of tendons their link: that of the first guide.

@@ -136,14 +136,18 @@ void settle_positions(SceneDescription& scene, const StartRequest& request, cons
     if (unreadable.count(coordinate) == 0)
       check_limited(scene, coordinate, initials.at(coordinate)->location.line, findings);
 
-  std::set<std::string> cylinders;  // these get their positions when a Simulation is made
-  for (const CylinderDescription& cylinder : scene.cylinders) cylinders.insert(cylinder.name);
+  std::map<std::string, const char*> cylinders;  // and their pumps; these get their positions when a Simulation is made
+  for (const CylinderDescription& cylinder : scene.cylinders) {
+    cylinders.emplace(cylinder.name, "cylinder");
+    if (!cylinder.pump.empty()) cylinders.emplace(cylinder.pump, "pump");
+  }
   for (const auto* given : {&request.clamped, &request.placed})
     for (const std::string& coordinate : *given)
-      if (cylinders.count(coordinate) > 0)
+      if (const auto found = cylinders.find(coordinate); found != cylinders.end())
         findings.error(initials.at(coordinate)->location.line, "<initial> of simulation",
-                       "a <cylinder> has no initial position: it starts with the length that the positions of the "
-                       "other joints give it",
+                       fmt::format("a <{}> has no initial position: it starts with the length that the positions of "
+                                   "the other joints give it",
+                                   found->second),
                        quoted(coordinate));
   start_sliders(scene, request.placed, initials);
   std::vector<InitialJoint> added;

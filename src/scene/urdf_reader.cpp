@@ -95,6 +95,7 @@ class SceneReader {
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
     add_winches(winches_, scene_, findings_);  // on the world, even if the root link of the file moves
+    add_pumps(cylinders_, scene_, findings_);
     connect_tendon_sensors(scene_, findings_);
     check_inertias(scene_, findings_);
     warn_of_units(scene_, findings_);
@@ -169,12 +170,15 @@ class SceneReader {
   void read_whole_cylinder(const XmlElement& unnamed) {
     const std::size_t errors = findings_.error_count();
     cylinders_.push_back(read_cylinder(unnamed));
-    const std::string name = cylinders_.back().cylinder.name;
-    read_actuators(unnamed.with_name(name));
-    if (findings_.error_count() > errors) unreadable_.insert(name);
+    const CylinderDescription& read = cylinders_.back().cylinder;
+    const XmlElement cylinder = unnamed.with_name(read.name);
+    read_actuators(cylinder);
+    if (const std::optional<XmlElement> hydraulics = cylinder.child("hydraulics"))
+      if (const std::optional<XmlElement> its = hydraulics->child("pump")) read_actuators(its->with_name(read.pump));
+    if (findings_.error_count() > errors) unreadable_.insert({read.name, read.pump});
   }
 
-  /// Reads what acts on the coordinate of a cylinder or a winch.
+  /// Reads what acts on the coordinate of a cylinder, a winch or a pump.
   void read_actuators(const XmlElement& element) {
     for (const XmlElement& child : element.children()) {
       if (child.tag() == "spring") scene_.springs.push_back(read_spring(child));

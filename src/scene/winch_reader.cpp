@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "flexarm/scene/tendon.h"
 #include "scene/readers.h"
 #include "scene/standard_reader.h"
@@ -14,12 +16,39 @@ void connect(const std::string& reel, std::shared_ptr<const ForceElementDescript
   element = std::move(tendon);
 }
 
+/// Whether the name of a reel's coordinate or link is taken; if so, records an error.
+bool is_reel_taken(const JointDescription& travel, const char* tag, const SceneDescription& scene, Findings& findings) {
+  const auto is_taken = [&](const auto& things, const std::string& name) {
+    return std::any_of(things.begin(), things.end(), [&](const auto& thing) { return thing.name == name; });
+  };
+  const bool is_joint_taken = is_taken(scene.joints, travel.name) || is_taken(scene.loop_joints, travel.name);
+  const std::string link = reel_of(travel.name);
+  if (!is_joint_taken && !is_taken(scene.links, link)) return false;
+  findings.error(
+      travel.location.line, fmt::format("<{}> {}", tag, quoted(travel.name)),
+      is_joint_taken ? "the name of its coordinate is taken by a joint" : "the name of its reel is taken by a link",
+      quoted(is_joint_taken ? travel.name : link));
+  return true;
+}
+
+/// Adds a reel without inertia, whose travel is the coordinate of a winch or a pump.
+void add_reel(JointDescription travel, SceneDescription& scene) {
+  travel.parent = scene.root_link;
+  travel.child = reel_of(travel.name);
+  scene.links.push_back({travel.child, {}, {}, {}, {}, travel.location});
+  scene.joints.push_back(std::move(travel));
+}
+
 }  // namespace
 
 ForceElementDescriptions::iterator find_tendon(SceneDescription& scene, const std::string& name) {
   return std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& element) {
     return std::string_view(element->kind()) == "tendon" && element->name == name;
   });
+}
+
+std::string reel_of(const std::string& coordinate) {
+  return coordinate + "_reel";
 }
 
 ReadWinch read_winch(const XmlElement& unnamed) {
@@ -40,18 +69,7 @@ void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene,
     const auto error = [&](const std::string& expected, const std::string& got) {
       findings.error(winch.travel.location.line, "<winch> " + quoted(winch.travel.name), expected, quoted(got));
     };
-    const std::string link = winch.travel.name + "_reel";
-    const auto is_taken = [&](const auto& things, const std::string& name) {
-      return std::any_of(things.begin(), things.end(), [&](const auto& thing) { return thing.name == name; });
-    };
-    if (is_taken(scene.joints, winch.travel.name) || is_taken(scene.loop_joints, winch.travel.name)) {
-      error("the name of its coordinate is taken by a joint", winch.travel.name);
-      continue;
-    }
-    if (is_taken(scene.links, link)) {
-      error("the name of its reel is taken by a link", link);
-      continue;
-    }
+    if (is_reel_taken(winch.travel, "winch", scene, findings)) continue;
     const auto tendon = find_tendon(scene, winch.tendon);
     if (tendon == scene.force_elements.end()) {
       if (!winch.tendon.empty()) error("tendon must be the name of a <tendon>", winch.tendon);
@@ -59,12 +77,23 @@ void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene,
     }
     if (dynamic_cast<const TendonDescription&>(**tendon).tension)
       error("a tendon of given tension has no length to pay out: give it ea", winch.tendon);
-    connect(link, *tendon);
-    JointDescription travel = winch.travel;
-    travel.parent = scene.root_link;
-    travel.child = link;
-    scene.links.push_back({link, {}, {}, {}, {}, winch.travel.location});
-    scene.joints.push_back(travel);
+    connect(reel_of(winch.travel.name), *tendon);
+    add_reel(winch.travel, scene);
+  }
+}
+
+void add_pumps(const std::vector<ReadCylinder>& cylinders, SceneDescription& scene, Findings& findings) {
+  for (const ReadCylinder& read : cylinders) {
+    const auto element = std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& each) {
+      return std::string_view(each->kind()) == "cylinder" && each->name == read.cylinder.name;
+    });
+    if (element == scene.force_elements.end() || read.cylinder.pump.empty()) continue;
+    const JointDescription& travel = *read.hydraulics->pump;
+    if (is_reel_taken(travel, "pump", scene, findings)) continue;
+    auto oil = std::make_shared<HydraulicsDescription>(dynamic_cast<const HydraulicsDescription&>(**element));
+    oil->reel = reel_of(travel.name);
+    *element = std::move(oil);
+    add_reel(travel, scene);
   }
 }
 

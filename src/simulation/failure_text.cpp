@@ -56,7 +56,7 @@ std::string advice(const Model& model, const StepResult& result) {
     case Reason::NotFinite:
       if (failure.place.force_element >= 0)
         return "a finite function of time; for a line: guides outside the rims of its pulleys, and a rest length above "
-               "0";
+               "0; for a cylinder: oil in both chambers";
       return "finite loads, efforts and motions: look at their functions of time and at commands";
     case Reason::RotationTooLarge:
       // The failed sub-step turns by `amount`. Suggest the length of one that turns by half a radian.

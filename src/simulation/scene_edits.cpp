@@ -203,6 +203,7 @@ void rename(SceneDescription& scene, const std::string& prefix) {
   for (ClearanceDescription& clearance : scene.clearances) put_joint(clearance.joint);
   for (CylinderDescription& cylinder : scene.cylinders) {
     cylinder.name = prefix + cylinder.name;
+    if (!cylinder.pump.empty()) cylinder.pump = prefix + cylinder.pump;
     put(cylinder.from), put(cylinder.to);
   }
   for (auto& element : scene.force_elements) {
@@ -250,7 +251,7 @@ void merge(SceneDescription& scene, const SceneDescription& other) {
   require_other_names(scene.probes, other.probes, "probe");
   require_other_names(scene.sensors, other.sensors, "sensor");
   require_other_names(scene.grounds, other.grounds, "ground");
-  require_other_names(scene.force_elements, other.force_elements, "spring or tendon");
+  require_other_names(scene.force_elements, other.force_elements, "spring, tendon or hydraulic cylinder");
   append(scene.links, links);
   append(scene.joints, other.joints);
   append(scene.loop_joints, other.loop_joints);

@@ -98,7 +98,7 @@ TEST(CylinderReader, RefusesWithExactlyTheseWords) {
        "scene.urdf:7: <servo> of cylinder 'lift': it acts on its <cylinder>; leave this out, got 'lift'"},
       {kEnds + "<piston/>",
        "scene.urdf:7: <piston> of cylinder 'lift': unknown element, expected limit, dynamics, friction, barrel, rod, "
-       "spring, drive, servo"},
+       "spring, drive, servo, hydraulics"},
   };
   for (const auto& [cylinder, expected] : cases) EXPECT_EQ(findings_of(scene_with(cylinder)), expected) << cylinder;
 }

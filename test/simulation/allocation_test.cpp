@@ -45,6 +45,34 @@ void expect_none_after_the_first_step(Simulation& simulation, int steps, const L
       << simulation.scheme();
 }
 
+// A pump, relief valves and voids that are filled.
+TEST_F(Allocation, NoneWithHydraulics) {
+  const char* const text = R"xml(<robot name="r"> <link name="world"/>
+    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 -1 0"/> </joint>
+    <link name="boom"> <inertial> <origin xyz="0.5 0 0"/> <mass value="10"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <cylinder name="lift" from="world" from_at="0.3 0 -0.3" to="boom" to_at="0.3 0 0">
+      <limit lower="0.2" upper="0.5"/>
+      <hydraulics bore="0.03" rod="0.02" bulk_modulus="1e8" pressure="4e5" relief_pressure="1.2e6" flow="1e-5*sin(t)">
+        <pump name="pump"> <drive rotor_inertia="20"/> </pump> </hydraulics> </cylinder>
+    <simulation> <integrator scheme="em" step="1e-3"/> <effort joint="pump" history="3000*sin(40*t)"/> </simulation>
+    </robot>)xml";
+  const scene::ReadResult read = scene::read_scene_text(text, "oil.urdf");
+  ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
+  for (const std::string& scheme : {std::string("em"), std::string("newmark")}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(*read.scene, options);
+    ResultColumns columns(simulation, ResultColumns::Solver::Without, {"cylinder/*"});
+    columns.row(simulation, {});
+    expect_none_after_the_first_step(simulation, 300, [&](const StepResult& result) {
+      EXPECT_TRUE(result.converged);
+      columns.row(simulation, {});
+    });
+    EXPECT_GT(simulation.energies().dissipated, 0);
+  }
+}
+
 // A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch.
 TEST_F(Allocation, NoneWithTendons) {
   const std::string text = R"xml(<robot name="r"> <link name="world"/>

@@ -148,6 +148,7 @@ struct CylinderDescription {
   Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();  ///< in their undeformed frames [m]
   Part barrel, rod;
   SourceLocation location;
+  std::string pump = {};  ///< coordinate that lets in oil: it starts with the length that the oil fills; empty: none
 };
 
 /// A joint with play. Within the play its child moves freely; contacts at the ends of the play replace the joint's

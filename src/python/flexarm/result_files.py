@@ -26,6 +26,7 @@ UNITS = {
     "energy/*": "J", "momentum/*": "kg m/s", "angular_momentum/*": "kg m^2/s",
     "solver/step": "s", "solver/error_estimate": "m", "solver/*": "1",
     "spring/*/length": "m", "spring/*/tension": "N",
+    "cylinder/*/pressure_[12]": "Pa",
     "contact/*/points": "1", "contact/*/gap": "m", "contact/*/f[xyz]": "N",
     "sensor/*/strain": "1", "sensor/*/f[xyz]": "N", "sensor/*/m[xyz]": "N m", "sensor/*/w[xyz]": "rad/s",
     "beam/*/e[xyz]": "1", "beam/*/k[xyz]": "1/m", "beam/*/f[xyz]": "N", "beam/*/m[xyz]": "N m",
