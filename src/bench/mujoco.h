@@ -46,7 +46,7 @@ std::vector<PeerRun> mujoco_runs(PeerProblem problem, const std::vector<double>&
                                  const std::function<void()>& advance_progress);
 
 /// The same for the rod with three tendons of config/speed/tendon_rod.urdf: 12 to 48 rigid segments on ball joints,
-/// with spatial tendons through sites, and steps from 2e-3 s to 2e-5 s.
+/// with spatial tendons through sites, and steps from 4e-3 s to 5e-4 s.
 std::vector<PeerRun> mujoco_tendon_runs(const std::vector<double>& times, bool quick,
                                         const std::function<void()>& advance_progress);
 

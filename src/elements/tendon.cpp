@@ -26,7 +26,7 @@ std::vector<int> nodes_of(const TendonPlan& plan) {
   return nodes;
 }
 
-/// Lines over so few nodes have one dense matrix, which then is as fast (docs/notes/lines.md 5).
+/// Lines over so few nodes have one dense matrix (docs/notes/lines.md 5).
 constexpr std::size_t kMostDenseNodes = 4;
 
 /// In pictures a turn on a pulley consists of so many straight parts.
