@@ -7,6 +7,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/sensitivities.h"
+#include "simulation/allocation_scenes.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "support/allocations.h"
@@ -47,17 +48,7 @@ void expect_none_after_the_first_step(Simulation& simulation, int steps, const L
 
 // A pump, relief valves and voids that are filled.
 TEST_F(Allocation, NoneWithHydraulics) {
-  const char* const text = R"xml(<robot name="r"> <link name="world"/>
-    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 -1 0"/> </joint>
-    <link name="boom"> <inertial> <origin xyz="0.5 0 0"/> <mass value="10"/>
-      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <cylinder name="lift" from="world" from_at="0.3 0 -0.3" to="boom" to_at="0.3 0 0">
-      <limit lower="0.2" upper="0.5"/>
-      <hydraulics bore="0.03" rod="0.02" bulk_modulus="1e8" pressure="4e5" relief_pressure="1.2e6" flow="1e-5*sin(t)">
-        <pump name="pump"> <drive rotor_inertia="20"/> </pump> </hydraulics> </cylinder>
-    <simulation> <integrator scheme="em" step="1e-3"/> <effort joint="pump" history="3000*sin(40*t)"/> </simulation>
-    </robot>)xml";
-  const scene::ReadResult read = scene::read_scene_text(text, "oil.urdf");
+  const scene::ReadResult read = scene::read_scene_text(kOilScene, "oil.urdf");
   ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
   for (const std::string& scheme : {std::string("em"), std::string("newmark")}) {
     SimulationOptions options;
@@ -112,21 +103,7 @@ TEST_F(Allocation, NoneWithTendons) {
 
 // Lines over many nodes, whose tangents have pieces, one of them paid out by a winch.
 TEST_F(Allocation, NoneWithLongLines) {
-  const char* const text = R"xml(<robot name="r"> <link name="world"/>
-    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint>
-    <link name="rod"> <beam elements="8" order="2"> <centerline> <line to="1 0 0"/> </centerline>
-      <section ea="2e5" ga2="1e5" ga3="1e5" gj="2" ei2="2.5" ei3="2.5" mass="0.5" j1="2e-4" j2="1e-4" j3="1e-4"/>
-      </beam> </link>
-    <joint name="wrist" type="continuous"> <parent link="rod"/> <child link="tool"/> <origin xyz="1 0 0"/> </joint>
-    <link name="tool"> <inertial> <mass value="1"/> <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>
-      </inertial> </link>
-    <tendon name="upper" ea="2000" damping="1"> <vias link="rod" from="0 0 0.03" to="1 0 0.03" count="9"/> </tendon>
-    <tendon name="lower" ea="2000"> <vias link="rod" from="0 0 -0.03" to="0.875 0 -0.03" count="8"/>
-      <via link="tool" at="0 0.1 -0.03"/> </tendon>
-    <winch name="hoist" tendon="upper"/>
-    <simulation> <gravity xyz="0 0 -9.81"/> <integrator scheme="em" step="1e-3"/>
-      <motion joint="hoist" position="-0.01*sin(9*t)"/> </simulation> </robot>)xml";
-  const scene::ReadResult read = scene::read_scene_text(text, "lines.urdf");
+  const scene::ReadResult read = scene::read_scene_text(kTendonScene, "lines.urdf");
   ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
   for (const std::string& scheme : {std::string("em"), std::string("newmark")}) {
     SimulationOptions options;
