@@ -53,7 +53,7 @@ def test_units_follow_from_names_where_a_file_has_none(files):
         assert hdf5.unit(name) in csv.unit(name).split(" or "), name
 
 
-@pytest.mark.parametrize("scene", ["flexible_two_link_arm", "rigid_double_pendulum"])
+@pytest.mark.parametrize("scene", ["flexible_two_link_arm", "rigid_double_pendulum", "tower_crane"])
 def test_units_are_those_of_the_simulation(scene):
     for name, unit in flexarm.Simulation(flexarm.read_scene(example(scene))).columns(["*", "probe/*/a[xyz]"]):
         assert unit in unit_of(name).split(" or "), name
@@ -61,7 +61,8 @@ def test_units_are_those_of_the_simulation(scene):
 
 def test_units_of_sensors_springs_and_contacts():
     units = {"sensor/s/fx": "N", "sensor/s/mz": "N m", "sensor/s/wx": "rad/s", "sensor/s/ay": "m/s^2",
-             "sensor/s/strain": "1", "sensor/s/z": "m", "sensor/s/qw": "1", "spring/s/length": "m",
+             "sensor/s/strain": "1", "sensor/s/tension": "N", "tendon/t/last_tension": "N",
+             "sensor/s/z": "m", "sensor/s/qw": "1", "spring/s/length": "m",
              "spring/s/tension": "N", "contact/a/b/fx": "N", "contact/a/b/points": "1", "contact/a/b/gap": "m",
              "momentum/x": "kg m/s", "angular_momentum/z": "kg m^2/s", "solver/error_estimate": "m", "other/x": ""}
     assert {name: unit_of(name) for name in units} == units
