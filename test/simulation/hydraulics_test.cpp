@@ -51,7 +51,7 @@ struct Ram {
   }
 };
 
-void run_until(Simulation& simulation, double end) {
+void advance_to(Simulation& simulation, double end) {
   while (simulation.time() < end - 1e-9) ASSERT_TRUE(simulation.step().converged) << simulation.time();
 }
 
@@ -98,7 +98,7 @@ TEST(Hydraulics, HaveTheFrequencyOfTheirOil) {
   std::array<double, 2> errors;
   for (int k = 0; k < 2; ++k) {
     Simulation swings = ram.at(k == 0 ? 1e-4 : 5e-5);
-    run_until(swings, end);
+    advance_to(swings, end);
     errors[k] = std::abs(position_of(swings, "ram") - Ram::kStart - amplitude * std::sin(omega * end));
   }
   EXPECT_LT(errors[1], 0.02 * amplitude);
@@ -133,7 +133,7 @@ TEST(Hydraulics, MoveAsTheDifferentialEquations) {
       std::array<double, 3> errors;
       for (int k = 0; k < 3; ++k) {
         Simulation simulation = ram.at(2e-4 / (1 << k), scheme);
-        run_until(simulation, 0.5);
+        advance_to(simulation, 0.5);
         errors[k] = std::abs(position_of(simulation, "ram") - tested.length);
         if (k < 2) continue;
         // Errors of pressures and of the velocity go with those of the length, by stiffness and frequency.
@@ -159,7 +159,7 @@ TEST(Hydraulics, HaveTheOrderOfTheScheme) {
   std::array<double, 2> errors;
   for (int k = 0; k < 2; ++k) {
     Simulation simulation = ram.at(k == 0 ? 1e-3 : 5e-4, "em4");
-    run_until(simulation, 0.5);
+    advance_to(simulation, 0.5);
     errors[k] = std::abs(position_of(simulation, "ram") - 0.678838489651455);
   }
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.2);
@@ -239,7 +239,7 @@ TEST(Hydraulics, LetSinkWhatIsTooHeavy) {
   ram.oil = "bulk_modulus='1e9' pressure='1e4' relief_pressure='4e4'";
   Simulation simulation = ram.at(1e-3);
   const double start = simulation.energies().total(), acceleration = relief * Ram::area(0) / Ram::kMass - 9.81;
-  run_until(simulation, 0.05);
+  advance_to(simulation, 0.05);
   const double velocity = simulation.velocity(0), position = position_of(simulation, "ram");
   for (int n = 0; n < 150; ++n) {
     ASSERT_TRUE(simulation.step().converged);
@@ -308,13 +308,13 @@ TEST(Hydraulics, AreMovedByAServo) {
   ram.simulation = "<load link='mass' force='-500 0 0'/>";
   Simulation simulation = ram.at(5e-4);
   const double start = simulation.energies().total();
-  run_until(simulation, 1);
+  advance_to(simulation, 1);
   EXPECT_LT(std::abs(oil_imbalance(simulation, start)), 1e-9);
   const double speed = (position_of(simulation, "ram") - 0.6) / 1;
   EXPECT_NEAR(speed, 0.2, 0.01);
   EXPECT_NEAR(oil_column(simulation, "joint/pump/velocity"), 0.2, 1e-2);
   simulation.command_set_point(simulation.find_coordinate("pump").value(), 0);
-  run_until(simulation, 2);
+  advance_to(simulation, 2);
   EXPECT_NEAR(oil_column(simulation, "joint/pump/velocity"), 0, 1e-2);
   EXPECT_NEAR(oil_column(simulation, "joint/pump/effort"), 500, 50);
 }
@@ -330,7 +330,7 @@ TEST(Hydraulics, LiftTheBoomOfTheDocumentation) {
   EXPECT_TRUE(read.diagnostics.empty()) << scene::to_text(read.diagnostics);
   Simulation lift(*read.scene);
   EXPECT_NEAR(position_of(lift, "ram"), 1, 1e-3);
-  run_until(lift, 3);
+  advance_to(lift, 3);
   EXPECT_NEAR(position_of(lift, "ram"), 1.1, 1e-3);
   EXPECT_NEAR(position_of(lift, "ram_pump"), 1.1, 1e-3);
   const double bore = 0.25 * kPi * 0.08 * 0.08, rod = 0.25 * kPi * 0.045 * 0.045;
@@ -345,9 +345,9 @@ TEST(Hydraulics, GoIntoCheckpoints) {
   ram.oil = "bulk_modulus='2e7' pressure='1e6' relief_pressure='3e6'";
   ram.simulation = "<load link='mass' force='1.1e4 0 0' history='sin(40*t)'/>";
   Simulation one = ram.at(1e-3), other = ram.at(1e-3);
-  run_until(one, 0.2);
+  advance_to(one, 0.2);
   other.restore(one.snapshot());
-  run_until(one, 0.4), run_until(other, 0.4);
+  advance_to(one, 0.4), advance_to(other, 0.4);
   const char* const column = "cylinder/ram/pressure_1";
   EXPECT_EQ(position_of(one, "ram"), position_of(other, "ram"));
   EXPECT_EQ(oil_column(one, column), oil_column(other, column));
