@@ -131,7 +131,8 @@ void HydraulicCylinder::evaluate(const ForceStep& step, const int*, ForceAction&
   action.residual.setZero();
   const LineEnds begin(plan_.rod, plan_.barrel, step.begin), end(plan_.rod, plan_.barrel, step.end);
   const Sums oil = sums(step, begin.length(), end.length());
-  action.dissipated = oil.dissipated;
+  // Without oil the step fails, also if no node can move.
+  action.dissipated = oil.is_possible ? oil.dissipated : std::numeric_limits<double>::quiet_NaN();
   action.work = oil.work;
   const auto [rod, barrel, pump] = local_;
   const LineStep line(begin, end, step.at_end);

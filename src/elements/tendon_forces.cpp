@@ -145,7 +145,8 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   if (plan_.has_tension) {
     slip.set_tension(parts_, step.load_factor * std::max(step.at_end ? function.end : function.mean, 0.0));
   } else if (!find_steps(step, begin, end, scratch)) {
-    action.residual.setConstant(std::numeric_limits<double>::quiet_NaN());  // the step fails
+    action.dissipated = std::numeric_limits<double>::quiet_NaN();  // the step fails, also if no node can move
+    action.residual.setConstant(action.dissipated);
     return;
   }
   add_directions(step, scratch, action);

@@ -128,7 +128,7 @@ void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& bala
       {tangent_.data(), rows, rows},
       balance.tangent && in_pieces ? PieceTangent::in(tangent_.data(), pieces, nodes.size()) : PieceTangent()};
   element.evaluate(step, nodes.data(), action);
-  if (not_finite_ < 0 && !std::isfinite(action.residual.sum())) not_finite_ = static_cast<int>(k);
+  if (not_finite_ < 0 && !std::isfinite(action.residual.sum() + action.dissipated)) not_finite_ = static_cast<int>(k);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     balance.residual.node(nodes[i]) += action.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
   if (balance.tangent && in_pieces) balance.tangent->add_coupling(static_cast<int>(k), action.pieces);

@@ -38,10 +38,22 @@ class SparseTangent::PatternBuilder {
     a_.closure_blocks_.push_back(blocks);
   }
 
-  void add_coupling(Coupling& coupling) {
-    coupling.blocks.clear();
-    for (const int row : coupling.nodes)
-      for (const int column : coupling.nodes) coupling.blocks.push_back(block(row, column));
+  /// All nodes with each other; if the tangent consists of pieces alone, only those of each piece.
+  void add_coupling(const ForcePieces& pieces, Coupling& coupling) {
+    const std::vector<int>& nodes = coupling.nodes;
+    const int count = static_cast<int>(nodes.size());
+    coupling.blocks.assign(nodes.size() * nodes.size(), -1);
+    const auto add = [&](int i, int j) {
+      if (i >= 0 && j >= 0) coupling.blocks[i * count + j] = block(nodes[i], nodes[j]);
+    };
+    if (pieces.pairs.empty() || pieces.rank > 0) {
+      for (int i = 0; i < count; ++i)
+        for (int j = 0; j < count; ++j) add(i, j);
+      return;
+    }
+    for (const std::array<int, 2>& pair : pieces.pairs)
+      for (const int i : pair)
+        for (const int j : pair) add(i, j);
   }
 
   void fold_joint(int j) {
@@ -177,7 +189,8 @@ void SparseTangent::build_pattern() {
       for (const int j : element.nodes) element_places_.push_back(pattern.block(i, j));
   });
   for (std::size_t k = 0; k < model_.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
-  for (Coupling& coupling : couplings_) pattern.add_coupling(coupling);
+  for (std::size_t k = 0; k < couplings_.size(); ++k)
+    pattern.add_coupling(model_.force_elements[k]->pieces(), couplings_[k]);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide)
       pattern.fold_slide(j);

@@ -17,11 +17,12 @@ namespace {
 
 constexpr double kRadius = 0.1;  // of drums [m]
 
-scene::SceneDescription line_scene(const std::string& parts, const std::string& scheme = "em") {
+scene::SceneDescription line_scene(const std::string& parts, const std::string& scheme = "em",
+                                   const std::string& more = "") {
   const scene::ReadResult read = scene::read_scene_text(
       fmt::format(R"(<robot name="r"> <link name="world"/> {} <simulation> <gravity xyz="0 0 -9.81"/>
-                       <integrator scheme="{}" step="1e-3" tolerance="1e-12"/> </simulation> </robot>)",
-                  parts, scheme),
+                       <integrator scheme="{}" step="1e-3" tolerance="1e-12"/> {} </simulation> </robot>)",
+                  parts, scheme, more),
       "lines.urdf");
   for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
   return read.scene.value();
@@ -164,6 +165,21 @@ TEST(TendonChanges, AFailureNamesTheLine) {
     EXPECT_NE(text.find("not finite: at <tendon> 'line'"), std::string::npos) << text;
     EXPECT_NE(text.find("guides outside the rims"), std::string::npos) << text;
   }
+}
+
+// No unknown belongs to the line then.
+TEST(TendonChanges, AnEmptyLineFailsAlsoWhereNothingMoves) {
+  Simulation s(line_scene(R"(<joint name="rail" type="prismatic"> <parent link="world"/> <child link="mass"/>
+                               <axis xyz="1 0 0"/> <limit lower="-9" upper="9" effort="0" velocity="0"/> </joint>)" +
+                              body_with_mass("mass", 1) +
+                              R"(<tendon name="line" ea="10" rest_length="1-10*t"> <via link="world" at="0 0 1"/>
+                               <via link="mass"/> </tendon>)",
+                          "em", "<motion joint=\"rail\" position=\"1\"/>"));
+  StepResult result;
+  for (int n = 0; n < 200 && (n == 0 || result.converged); ++n) result = s.step();
+  EXPECT_EQ(result.reason, StepResult::Reason::NotFinite);
+  EXPECT_NE(s.explain(result).find("<tendon> 'line'"), std::string::npos) << s.explain(result);
+  EXPECT_TRUE(std::isfinite(s.energies().strain));
 }
 
 TEST(TendonChanges, FrictionHasNoBackwardSteps) {
