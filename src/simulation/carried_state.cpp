@@ -297,38 +297,45 @@ class Carrier {
         out.last_transmitted[6 * i + k] = state_.last_transmitted[6 * reactions[i] + k];
   }
 
-  /// Kind, name and links of a force element, and the number of earlier elements that agree in all three.
-  using ElementKey = std::tuple<std::string, std::string, std::vector<std::string>, int>;
-  template <class Visitor>
-  static void for_each_memory(const Model& model, const Visitor& visit) {
-    std::map<ElementKey, int> counts;
-    std::size_t memory = 0;
-    for (const auto& element : model.force_elements) {
-      ElementKey key{element->kind(), element->name(), element->links(), 0};
-      std::get<3>(key) = counts[key]++;
-      visit(key, *element, memory);
-      memory += element->memory_size();
-    }
+  /// An element before the edit, and its memory.
+  struct OldElement {
+    const ForceElement* element;
+    const double* memory;
+    bool is_taken = false;  ///< a new element continues it
+  };
+  /// Kind, name and links of a force element. Several elements may agree in these.
+  using ElementKey = std::tuple<std::string, std::string, std::vector<std::string>>;
+  static ElementKey key_of(const ForceElement& element) { return {element.kind(), element.name(), element.links()}; }
+
+  /// Whether both act on the same nodes. `may_move`: frames of nodes may have moved in their bodies.
+  bool agree(const std::vector<int>& own, const std::vector<int>& old, bool may_move) const {
+    return std::equal(own.begin(), own.end(), old.begin(), old.end(),
+                      [&](int a, int b) { return same_.nodes[a] == b || (may_move && same_.nodes[a] < 0); });
   }
 
   void overlay_force_memory(State& out) const {
-    std::map<ElementKey, std::pair<const ForceElement*, std::size_t>> old;
-    for_each_memory(old_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
-      old.emplace(key, std::pair(&element, memory));
-    });
-    for_each_memory(new_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
-      const auto found = old.find(key);
-      if (found == old.end() || found->second.first->memory_size() != element.memory_size()) return;
-      const ForceElement& before = *found->second.first;
-      const double* then = state_.force_memory.data() + found->second.second;
-      double* now = out.force_memory.data() + memory;
-      // The memory may contain positions in frames of nodes, so all nodes have to correspond.
-      const std::vector<int>&own = element.reach(), &other = before.reach();
-      const bool is_same = std::equal(own.begin(), own.end(), other.begin(), other.end(),
-                                      [&](int a, int b) { return same_.nodes[a] == b; });
-      if (is_same) std::copy_n(then, element.memory_size(), now);
-      element.carry(before, then, out, now);
-    });
+    std::map<ElementKey, std::vector<OldElement>> known;
+    const double* old_memory = state_.force_memory.data();
+    for (const auto& element : old_.force_elements) {
+      known[key_of(*element)].push_back({element.get(), old_memory});
+      old_memory += element->memory_size();
+    }
+    double* memory = out.force_memory.data();
+    for (const auto& element : new_.force_elements) {
+      std::vector<OldElement>& candidates = known[key_of(*element)];
+      const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const OldElement& old) {
+        if (old.is_taken || old.element->memory_size() != element->memory_size()) return false;
+        return !element->name().empty() || agree(element->reach(), old.element->reach(), true);
+      });
+      if (found != candidates.end()) {
+        found->is_taken = true;
+        // The memory may contain positions in frames of nodes, so all nodes have to correspond.
+        if (agree(element->reach(), found->element->reach(), false))
+          std::copy_n(found->memory, element->memory_size(), memory);
+        element->carry(*found->element, found->memory, out, memory);
+      }
+      memory += element->memory_size();
+    }
   }
 
   void add_wrench(NodalLoad wrench, State& out) const {

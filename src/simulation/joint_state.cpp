@@ -263,6 +263,7 @@ double turn_between(const Model& model, const std::vector<Released>& from, const
 /// wind up whole turns. `out`: on input with the memories of elements that begin anew at `after`.
 void carry_memories(const Model& model, const DegreesOfFreedom& dof, const State& state, const Motion& before,
                     const Motion& after, State& out) {
+  if (model.force_elements.empty()) return;
   const int parts = 1 + static_cast<int>(turn_between(model, before.released, after.released) / (0.5 * kPi));
   std::vector<double> memory = state.force_memory;
   State on_way = out;

@@ -128,21 +128,21 @@ TEST(TendonChanges, APayloadThatComesAndGoesLeavesTheLine) {
   EXPECT_NEAR(line_account(s), start, 1e-8);
 }
 
-// The line is as long as at the start of the scene, when the hook was held 2 m below the carriage's drum.
-TEST(TendonChanges, AHookThatIsReleasedDoesNotMeasureItsLineAnew) {
+// The line is as long as at the start of the scene. In the scene that attaching makes, the ball starts 0.3 m farther
+// away.
+TEST(TendonChanges, AnAttachedBallDoesNotMeasureItsLineAnew) {
   Simulation s(line_scene(R"(<joint name="slide" type="prismatic"> <parent link="world"/> <child link="carriage"/>
                                <axis xyz="0 0 1"/> <limit lower="-1" upper="1" effort="0" velocity="0"/> </joint>)" +
-                          body_with_mass("carriage", 1) +
-                          R"(<joint name="grip" type="fixed"> <parent link="carriage"/> <child link="hook"/>
-                               <origin xyz="0 0 -2"/> </joint>)" +
-                          body_with_mass("hook", 1) +
-                          R"(<tendon name="line" ea="400"> <via link="world"/> <via link="hook"/> </tendon>)"));
-  s.set_joint_state({{0, -0.3, 0.0}});
+                          body_with_mass("carriage", 1) + free_body("ball", 1, "0 0 -2") +
+                          R"(<tendon name="line" ea="400"> <via link="world"/> <via link="ball"/> </tendon>)"));
+  s.set_joint_state({{*s.find_coordinate("ball_flight/z"), -0.3, 0.0}});
   EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
-  detach(s, "hook");
+  attach(s, "ball", "carriage");
   EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
   const double start = line_account(s);
-  go_on(s, 300);
+  go_on(s, 100);
+  detach(s, "ball");
+  go_on(s, 200);
   EXPECT_NEAR(line_account(s), start, 1e-9);
 }
 
@@ -168,6 +168,37 @@ TEST(TendonChanges, AFailureNamesTheLine) {
 }
 
 // No unknown belongs to the line then.
+// The second of two lines without names is the first one afterwards.
+TEST(TendonChanges, LinesWithoutNamesAreNotMistaken) {
+  const auto winch_drum = [](const std::string& name, const std::string& y) {
+    return fmt::format(R"(<joint name="{0}" type="continuous"> <parent link="world"/> <child link="{0}"/>
+                            <origin xyz="0 {1} 0"/> <axis xyz="0 1 0"/> </joint>)",
+                       name, y) +
+           body_with_mass(name, 2) +
+           fmt::format(R"(<tendon ea="10"> <pulley link="{0}" axis="0 1 0" radius="0.1" grips="true"/>
+                            <via link="world" at="0.1 {1} -2"/> </tendon>)",
+                       name, y);
+  };
+  Simulation s(line_scene(winch_drum("first", "0") + winch_drum("second", "1")));
+  s.set_joint_state({{0, -2.0, 0.0}, {1, -5 * kPi, 0.0}});
+  const auto energy = [](double angle) { return 0.5 * 10 * std::pow(kRadius * angle, 2) / (2 + kRadius * angle); };
+  EXPECT_NEAR(s.energies().strain, energy(-2.0) + energy(-5 * kPi), 1e-11);
+  remove(s, "first");
+  EXPECT_NEAR(s.energies().strain, energy(-5 * kPi), 1e-11);
+}
+
+TEST(TendonChanges, LinesWithoutNamesOnTheSameBodiesKeepTheirOwn) {
+  const std::string line = R"(<tendon ea="2000"> <via link="world" at="-1 {0} 0"/> <via link="world" at="0 {0} 0"
+                                friction="{1}"/> <via link="ball"/> </tendon>)";
+  Simulation s(line_scene(free_body("ball", 1, "1 0 -1") + free_body("other", 1, "9 0 0") +
+                          fmt::format(line, 0.0, 0.1) + fmt::format(line, 0.5, 0.6)));
+  go_on(s, 700);
+  ASSERT_GT(s.energies().dissipated, 1e-3);  // they have slipped
+  const double strain = s.energies().strain;
+  remove(s, "other");
+  EXPECT_NEAR(s.energies().strain, strain, 1e-9 * strain);
+}
+
 TEST(TendonChanges, AnEmptyLineFailsAlsoWhereNothingMoves) {
   Simulation s(line_scene(R"(<joint name="rail" type="prismatic"> <parent link="world"/> <child link="mass"/>
                                <axis xyz="1 0 0"/> <limit lower="-9" upper="9" effort="0" velocity="0"/> </joint>)" +
