@@ -150,14 +150,11 @@ ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::
 
 /// Index of the tendon that a sensor measures, in the scene's list and the model's, which begins with these elements.
 std::size_t tendon_of(const scene::SceneDescription& scene, const scene::Sensor& sensor) {
-  const auto& elements = scene.force_elements;
-  const auto found = std::find_if(elements.begin(), elements.end(), [&](const auto& element) {
-    return std::string_view(element->kind()) == "tendon" && element->name == sensor.tendon;
-  });
-  if (found == elements.end())
+  const std::size_t found = find_force_element(scene, "tendon", sensor.tendon);
+  if (found == scene.force_elements.size())
     throw ModelError(at(sensor.location, "<sensor> '" + sensor.name + "'") + "there is no tendon '" + sensor.tendon +
                      "'");
-  return static_cast<std::size_t>(found - elements.begin());
+  return found;
 }
 
 /// Index into Model::reactions. Sensors of the same reaction share an entry.

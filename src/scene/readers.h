@@ -77,8 +77,6 @@ struct ReadWinch {
 };
 /// Reads <winch> without its children <spring>, <drive> and <servo>.
 ReadWinch read_winch(const XmlElement& winch);
-/// The tendon of a name, or the end of the list of force elements.
-ForceElementDescriptions::iterator find_tendon(SceneDescription& scene, const std::string& name);
 /// Adds for each winch a joint on the scene's root link, which must be settled, that carries a reel, the link
 /// NAME_reel, and lets that pay out the winch's tendon. The scene's other links, joints and tendons must be complete.
 void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene, Findings& findings);

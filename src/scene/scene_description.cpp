@@ -74,6 +74,13 @@ std::size_t sensor_error_count(SensorKind kind) {
   return kind == SensorKind::Pose ? 6 : sensor_channels(kind).size();
 }
 
+std::size_t find_force_element(const SceneDescription& scene, const std::string& kind, const std::string& name) {
+  const auto& elements = scene.force_elements;
+  const auto found = std::find_if(elements.begin(), elements.end(),
+                                  [&](const auto& each) { return each->kind() == kind && each->name == name; });
+  return static_cast<std::size_t>(found - elements.begin());
+}
+
 const JointLimits* limits_of(const SceneDescription& scene, const std::string& coordinate) {
   for (const auto* joints : {&scene.joints, &scene.loop_joints})
     for (const JointDescription& joint : *joints)

@@ -71,11 +71,11 @@ Sensor read_sensor(const XmlElement& unnamed) {
 void connect_tendon_sensors(SceneDescription& scene, Findings& findings) {
   for (Sensor& sensor : scene.sensors) {
     if (sensor.kind != SensorKind::Tendon || sensor.tendon.empty()) continue;
-    const auto tendon = find_tendon(scene, sensor.tendon);
-    if (tendon == scene.force_elements.end())
+    const std::size_t tendon = find_force_element(scene, "tendon", sensor.tendon);
+    if (tendon == scene.force_elements.size())
       findings.error(sensor.location.line, "<sensor> " + quoted(sensor.name), "tendon must be the name of a <tendon>",
                      quoted(sensor.tendon));
-    else if (const std::vector<LinkPoint> points = (*tendon)->points(); !points.empty())
+    else if (const std::vector<LinkPoint> points = scene.force_elements[tendon]->points(); !points.empty())
       sensor.link = points.front().link;
   }
 }

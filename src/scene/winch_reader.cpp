@@ -41,12 +41,6 @@ void add_reel(JointDescription travel, SceneDescription& scene) {
 
 }  // namespace
 
-ForceElementDescriptions::iterator find_tendon(SceneDescription& scene, const std::string& name) {
-  return std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& element) {
-    return std::string_view(element->kind()) == "tendon" && element->name == name;
-  });
-}
-
 std::string reel_of(const std::string& coordinate) {
   return coordinate + "_reel";
 }
@@ -70,29 +64,28 @@ void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene,
       findings.error(winch.travel.location.line, "<winch> " + quoted(winch.travel.name), expected, quoted(got));
     };
     if (is_reel_taken(winch.travel, "winch", scene, findings)) continue;
-    const auto tendon = find_tendon(scene, winch.tendon);
-    if (tendon == scene.force_elements.end()) {
+    const std::size_t tendon = find_force_element(scene, "tendon", winch.tendon);
+    if (tendon == scene.force_elements.size()) {
       if (!winch.tendon.empty()) error("tendon must be the name of a <tendon>", winch.tendon);
       continue;
     }
-    if (dynamic_cast<const TendonDescription&>(**tendon).tension)
+    if (dynamic_cast<const TendonDescription&>(*scene.force_elements[tendon]).tension)
       error("a tendon of given tension has no length to pay out: give it ea", winch.tendon);
-    connect(reel_of(winch.travel.name), *tendon);
+    connect(reel_of(winch.travel.name), scene.force_elements[tendon]);
     add_reel(winch.travel, scene);
   }
 }
 
 void add_pumps(const std::vector<ReadCylinder>& cylinders, SceneDescription& scene, Findings& findings) {
   for (const ReadCylinder& read : cylinders) {
-    const auto element = std::find_if(scene.force_elements.begin(), scene.force_elements.end(), [&](const auto& each) {
-      return std::string_view(each->kind()) == "cylinder" && each->name == read.cylinder.name;
-    });
-    if (element == scene.force_elements.end() || read.cylinder.pump.empty()) continue;
+    const std::size_t index = find_force_element(scene, "cylinder", read.cylinder.name);
+    if (index == scene.force_elements.size() || read.cylinder.pump.empty()) continue;
     const JointDescription& travel = *read.hydraulics->pump;
     if (is_reel_taken(travel, "pump", scene, findings)) continue;
-    auto oil = std::make_shared<HydraulicsDescription>(dynamic_cast<const HydraulicsDescription&>(**element));
+    auto& element = scene.force_elements[index];
+    auto oil = std::make_shared<HydraulicsDescription>(dynamic_cast<const HydraulicsDescription&>(*element));
     oil->reel = reel_of(travel.name);
-    *element = std::move(oil);
+    element = std::move(oil);
     add_reel(travel, scene);
   }
 }

@@ -170,13 +170,10 @@ void take_away(SceneDescription& scene, const std::string& link) {
     drop_if(sensor.group, goes);
     if (is_of_group && sensor.group.empty()) sensor.link = link;  // so that the sensor is removed, too
   }
-  const auto is_element_gone = [&](const auto& element) { return is_at_gone(element->points()); };
-  std::set<std::string> tendons{""};
-  for (const auto& element : scene.force_elements)
-    if (is_element_gone(element)) tendons.insert(element->name);
-  drop_if(scene.force_elements, is_element_gone);
+  drop_if(scene.force_elements, [&](const auto& element) { return is_at_gone(element->points()); });
   drop_if(scene.sensors, [&](const Sensor& sensor) {
-    const bool is_of_gone_tendon = sensor.kind == SensorKind::Tendon && tendons.count(sensor.tendon) > 0;
+    const bool is_of_gone_tendon = sensor.kind == SensorKind::Tendon &&
+                                   find_force_element(scene, "tendon", sensor.tendon) == scene.force_elements.size();
     return is_of_gone_tendon || goes(sensor.link) || joints.count(sensor.joint) > 0;
   });
   const auto of_pair = [&](const ContactPair& pair) { return goes(pair.first) || goes(pair.second); };
@@ -207,10 +204,7 @@ void rename(SceneDescription& scene, const std::string& prefix) {
     put(cylinder.from), put(cylinder.to);
   }
   for (auto& element : scene.force_elements) {
-    auto renamed = element->with_links([&](std::string link) {
-      put(link);
-      return LinkChange{link, Pose()};
-    });
+    auto renamed = with_link_names(*element, put);
     if (!renamed->name.empty()) renamed->name = prefix + renamed->name;
     element = std::move(renamed);
   }

@@ -1,9 +1,11 @@
 #pragma once
 /// Edits of a scene, to add or remove links.
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "flexarm/scene/scene_description.h"
 
@@ -36,6 +38,14 @@ void keep_border(SceneDescription& scene, const std::string& link, const Vector3
 /// @throws std::invalid_argument if a joint that stays is a mimic of a removed one.
 void take_away(SceneDescription& scene, const std::string& link);
 
+/// Returns a copy of a force element in which `change(name)` has changed the names of its links.
+template <class Change>
+std::shared_ptr<ForceElementDescription> with_link_names(const ForceElementDescription& element, const Change& change) {
+  return element.with_links([&](std::string link) {
+    change(link);
+    return LinkChange{std::move(link), Pose()};
+  });
+}
 /// Puts `prefix` before all names in a scene, except for those of the root link and of grounds.
 void rename(SceneDescription& scene, const std::string& prefix);
 /// Adds another scene. The two root links become one.

@@ -67,11 +67,7 @@ void for_each_end(scene::SceneDescription& model, const Visit& visit) {
   for (auto* joints : {&model.joints, &model.loop_joints})
     for (scene::JointDescription& joint : *joints) visit(joint.parent), visit(joint.child);
   for (scene::CylinderDescription& cylinder : model.cylinders) visit(cylinder.from), visit(cylinder.to);
-  for (auto& element : model.force_elements)
-    element = element->with_links([&](std::string link) {
-      visit(link);
-      return scene::LinkChange{link, Pose()};
-    });
+  for (auto& element : model.force_elements) element = scene::with_link_names(*element, visit);
 }
 
 /// Lets the reels of winches travel along the world's x axis, wherever the model is.

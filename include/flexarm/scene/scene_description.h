@@ -378,4 +378,7 @@ const std::vector<std::string>& coordinate_suffixes(const JointDescription& join
 /// Limits of a joint coordinate, by its name. Null if it has none; coordinates such as "wrist/rx" have none.
 const JointLimits* limits_of(const SceneDescription& scene, const std::string& coordinate);
 
+/// Index of the first force element of a kind ("tendon") with a name; the number of force elements if there is none.
+std::size_t find_force_element(const SceneDescription& scene, const std::string& kind, const std::string& name);
+
 }  // namespace flexarm::scene
