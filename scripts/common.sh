@@ -58,12 +58,13 @@ is_installed() {
   grep -qx installed <<<"$states"
 }
 
-# first_known NAME...: prints the first package that the package lists contain; nothing if `-` comes before it.
+# first_known NAME...: prints the first package that the package lists contain; nothing if `-` comes before it. apt-cache
+# shows nothing, and does not fail, for packages that others only mention.
 first_known() {
   local name
   for name; do
     [[ $name == - ]] && return
-    apt-cache show "$name" >/dev/null 2>&1 && printf '%s\n' "$name" && return
+    [[ -n $(apt-cache show "$name" 2>/dev/null) ]] && printf '%s\n' "$name" && return
   done
   die "the package archive has none of: $*"
 }

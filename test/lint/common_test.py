@@ -46,9 +46,10 @@ class Common(unittest.TestCase):
         self.assertEqual(run("candidates 'one|-' -", ROS_DISTRO="noetic"), ["one", "-"])
 
     def test_the_first_package_that_is_known_is_taken(self):
-        known = "apt-cache() { [[ $2 == known || $2 == later ]]; }\n"
+        known = "apt-cache() { case $2 in known | later) echo Package: $2 ;; mentioned) ;; *) return 100 ;; esac; }\n"
         self.assertEqual(run(known + "first_known other known later -"), ["known"])
         self.assertEqual(run(known + "first_known other -"), [])
+        self.assertEqual(run(known + "first_known mentioned -"), [])
         self.assertEqual(run(known + "(first_known other another 2>&1) || echo failed"),
                          ["bash: the package archive has none of: other another", "failed"])
 
