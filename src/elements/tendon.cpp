@@ -56,7 +56,7 @@ Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, co
   shares_.assign(parts_, 1.0);
   std::vector<double> numbers(memory_size(), 0.0);
   const NewMemory memory{numbers.data(), parts_};
-  begin(Poses(poses), 0, memory);
+  lay(Poses(poses), 0, memory);
   for (int part = 0; part < parts_; ++part) shares_[part] = lengths(Poses(poses), memory, part).length;
   length_at_start_ = std::accumulate(shares_.begin(), shares_.end(), 0.0);
   for (double& share : shares_) share /= length_at_start_;
@@ -92,10 +92,6 @@ std::string Tendon::description() const {
 
 bool Tendon::suits_backward_steps() const {
   return std::all_of(plan_.guides.begin(), plan_.guides.end(), [](const auto& guide) { return guide.friction == 0; });
-}
-
-Tendon::Scratch& Tendon::scratch() const {
-  return Scratch::of(parts_, 6 * reach().size());
 }
 
 Tendon::Neighbours Tendon::neighbours(const Memory& memory, int guide) const {
@@ -155,7 +151,7 @@ void Tendon::find_angles(const Poses& poses, const NewMemory& memory) const {
 }
 
 void Tendon::start(const State& state, const double* functions, double* numbers) const {
-  begin(Poses(state), this->functions().empty() ? plan_.rest_length : functions[0], {numbers, parts_});
+  lay(Poses(state), this->functions().empty() ? plan_.rest_length : functions[0], {numbers, parts_});
 }
 
 /// What drums have wound up and what has slipped stays, and so do the rest lengths of all parts.
@@ -174,7 +170,7 @@ void Tendon::carry(const ForceElement& before, const double* old_numbers, const 
 }
 
 /// Sets the memory to that of a line that has not moved yet.
-void Tendon::begin(const Poses& poses, double function, const NewMemory& memory) const {
+void Tendon::lay(const Poses& poses, double function, const NewMemory& memory) const {
   memory.function() = function;
   const int count = static_cast<int>(plan_.guides.size());
   for (int i = 0; i < count; ++i) memory.touched(i) = 1;
@@ -239,11 +235,18 @@ void Tendon::find_gradients(const Poses& poses, const Memory& memory, int part, 
 
 double Tendon::stretch_rate(const Poses& poses, const Memory& memory, int part,
                             const std::vector<Vector6>& velocities) const {
-  PartForces& gradient = scratch().gradient;
-  find_gradients(poses, memory, part, gradient);
   double rate = 0;
-  for (std::size_t i = 0; i < reach().size(); ++i)
-    rate += (gradient.length - gradient.rest).segment<6>(6 * static_cast<Eigen::Index>(i)).dot(velocities[reach()[i]]);
+  for_each_span(memory, part, [&](const Span& span) {
+    const int nodes[2] = {span.piece.first().node, span.piece.second().node};
+    if (nodes[0] == nodes[1]) return;
+    const PiecePoses at = poses.of(span.piece);
+    const PieceState here = span.piece.follow(at, memory.angles(span.first, span.second));
+    const Vector12 gradient = span.piece.gradient(at, here, span.length - span.rest);
+    for (int i = 0; i < 2; ++i)
+      if (nodes[i] >= 0) rate += gradient.segment<6>(6 * i).dot(velocities[nodes[i]]);
+  });
+  for (const TendonWinch& winch : plan_.winches)
+    if (part == 0 && winch.node >= 0) rate -= winch.direction.dot(velocities[winch.node].head<3>());
   return rate;
 }
 

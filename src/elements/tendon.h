@@ -1,6 +1,7 @@
 #pragma once
 /// A line over points and pulleys of any number of links that pulls and never pushes. (docs/notes/lines.md)
 
+#include <memory>
 #include <vector>
 
 #include "elements/tendon_law.h"
@@ -64,6 +65,8 @@ class Tendon : public ForceElement {
 
   /// The straight pieces, if the line has one part and touches many nodes. Then evaluate() can also give one matrix.
   const ForcePieces& pieces() const override { return pieces_; }
+  std::unique_ptr<ForceWorkspace> make_workspace() const override;
+  void begin(const ForceStep& step) const override;
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   double energy(const State& state, const double* memory) const override;
   ForceMeasures measures(const State& state, const double* memory, const int* nodes) const override;
@@ -85,7 +88,7 @@ class Tendon : public ForceElement {
   using NewMemory = MemoryOf<double>;
   struct Span;  // a straight piece between two guides that the line touches
   struct MovedSpan;
-  struct Scratch;
+  struct Workspace;
   struct PartForces;  // sums of the derivatives of the lengths of one part
   class Poses;        // of all nodes, from a state or a step
 
@@ -110,17 +113,15 @@ class Tendon : public ForceElement {
   double energy(const Poses& poses, const Memory& memory) const;
   /// Sets the angles to those at `poses` that are nearest to the present ones.
   void find_angles(const Poses& poses, const NewMemory& memory) const;
-  void begin(const Poses& poses, double function, const NewMemory& memory) const;
+  void lay(const Poses& poses, double function, const NewMemory& memory) const;
   /// Lets the line leave pulleys and touch others. Returns whether it has done so.
   bool find_touched(const Poses& poses, const NewMemory& memory) const;
-  void find_spans(const ForceStep& step, const Memory& begin, const NewMemory& end,
-                  std::vector<MovedSpan>& spans) const;
-  void find_part_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const;
-  void find_rate(const ForceStep& step, const Memory& begin, const Memory& end, int part, TendonPartStep& out) const;
+  bool has_rates(const ForceStep& step) const;
+  void find_end(const ForceStep& step, const Memory& begin, const NewMemory& end, Workspace& workspace) const;
+  void find_rates(const ForceStep& step, const Memory& begin, const Memory& end, Workspace& workspace) const;
   double contact_angle(const Poses& poses, const Memory& memory, int guide) const;
-  Scratch& scratch() const;
-  bool find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const;
-  void add_directions(const ForceStep& step, Scratch& scratch, ForceAction& action) const;
+  bool find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Workspace& workspace) const;
+  void add_directions(const ForceStep& step, Workspace& workspace, ForceAction& action) const;
   void add_slope(const Span& span, double force, const Matrix12& slope, ForceAction& action) const;
   void add_forces(TendonSlip& slip, const std::vector<PartForces>& directions, const std::vector<PartForces>& slopes,
                   ForceAction& action) const;

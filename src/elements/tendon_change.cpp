@@ -108,7 +108,7 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
     return out;
   }
   const Angles middle{(1 - weight) * begin.begin + weight * end.begin, (1 - weight) * begin.end + weight * end.end};
-  const Angles mean = tangents_near(a, b, mean_a.values(), mean_b.values(), middle).angles;
+  const Angles mean = tangents_near(a, b, values_of(mean_a), values_of(mean_b), middle).angles;
   const VectorGradient<S> gradient = vector_gradient(a, b, mean_a, mean_b, weights, mean);
   out.direction = gradient.on_nodes(mean_a, mean_b);
   if (at_end) return out;
@@ -124,21 +124,17 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
 
 PieceChange TendonPiece::change(const PieceEnd& begin, const PieceEnd& end, const PieceWeights& weights, bool at_end,
                                 bool with_slope) const {
-  const tendon::GuideFrame<double> begin_a = tendon::frame_of(first_, begin.poses.first),
-                                   begin_b = tendon::frame_of(second_, begin.poses.second);
-  const tendon::GuideFrame<double> end_a = tendon::frame_of(first_, end.poses.first),
-                                   end_b = tendon::frame_of(second_, end.poses.second);
   PieceChange out;
   if (!with_slope) {
-    out.direction = tendon::change_of<double>(first_, second_, begin_a, end_a, begin_b, end_b, begin.state, end.state,
-                                              weights, at_end)
+    out.direction = tendon::change_of<double>(first_, second_, begin.first, end.first, begin.second, end.second,
+                                              begin.state, end.state, weights, at_end)
                         .direction;
     return out;
   }
-  const tendon::GuideFrame<tendon::Dual> moving_a = tendon::moving(end_a, first_, 0),
-                                         moving_b = tendon::moving(end_b, second_, 6);
+  const tendon::GuideFrame<tendon::Dual> moving_a = tendon::moving(end.first, first_, 0),
+                                         moving_b = tendon::moving(end.second, second_, 6);
   const tendon::Change<tendon::Dual> change = tendon::change_of<tendon::Dual>(
-      first_, second_, begin_a, moving_a, begin_b, moving_b, begin.state, end.state, weights, at_end);
+      first_, second_, begin.first, moving_a, begin.second, moving_b, begin.state, end.state, weights, at_end);
   for (int i = 0; i < 12; ++i) {
     out.direction[i] = change.direction[i].value();
     out.direction_slope.row(i) = change.direction[i].derivatives().transpose();

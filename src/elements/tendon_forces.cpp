@@ -13,53 +13,71 @@ FunctionStep Tendon::function_of(const ForceStep& step) const {
   return step.functions[0];
 }
 
-/// Finds all spans at both ends of the step, and the angles at its end.
-void Tendon::find_spans(const ForceStep& step, const Memory& begin, const NewMemory& end,
-                        std::vector<MovedSpan>& spans) const {
-  const Poses from(step.begin), to(step.end);
-  spans.clear();
-  for_each_span(begin, [&](const Span& span) {
-    const auto at = [&](const Poses& poses) {
-      const PiecePoses here = poses.of(span.piece);
-      return PieceEnd{here, span.piece.follow(here, begin.angles(span.first, span.second))};
-    };
-    spans.push_back({span, at(from), at(to)});
-    end.goes(span.first) = spans.back().end.state.begin;
-    end.comes(span.second) = spans.back().end.state.end;
-  });
-}
-
-/// Finds the lengths of all parts over the step, without slip, and the data of the rule for rates.
-void Tendon::find_part_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const {
-  const Poses from(step.begin), to(step.end);
-  std::vector<TendonPartStep>& parts = scratch.part_steps;
-  parts.clear();
-  for (int part = 0; part < parts_; ++part)
-    parts.push_back(
-        {{0, straight_rest(from, begin, part)}, {0, straight_rest(to, end, part)}, step.duration, step.at_end});
-  for (const MovedSpan& moved : scratch.spans) {
-    TendonPartStep& part = parts[moved.span.part];
-    for (const auto& [lengths, at] : {std::pair(&part.begin, &moved.begin), std::pair(&part.end, &moved.end)}) {
-      lengths->length += at->state.value(moved.span.length);
-      lengths->rest += at->state.value(moved.span.rest);
-    }
+std::unique_ptr<ForceWorkspace> Tendon::make_workspace() const {
+  auto out = std::make_unique<Workspace>();
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(reach().size());
+  out->spans.reserve(plan_.guides.size());
+  out->part_steps.resize(parts_);
+  out->begin_rates.resize(parts_);
+  out->ratios.reserve(plan_.guides.size());
+  for (std::vector<PartForces>* sums : {&out->directions, &out->slopes}) {
+    sums->resize(parts_);
+    for (PartForces& sum : *sums) sum.reset(size);
   }
-  if (!step.at_end || step.duration == 0 || plan_.law.damping == 0) return;
-  for (int part = 0; part < parts_; ++part) find_rate(step, begin, end, part, parts[part]);
+  return out;
 }
 
-/// The rate at the end of the step, by the rule for rates.
-void Tendon::find_rate(const ForceStep& step, const Memory& begin, const Memory& end, int part,
-                       TendonPartStep& out) const {
-  const double by_function = shares_[part] * (end.function() - begin.function());
-  CoordinateStep change;
-  change.begin_rate = stretch_rate(Poses(step.begin), begin, part, step.velocities) - begin.slip_rate(part);
-  change.gamma = step.gamma;
-  change.step = step.duration;
-  // Without the function, whose rate is that of the step.
-  change.increment = out.end.length - out.end.rest - out.begin.length + out.begin.rest + by_function;
-  out.rate = rate_of(change) - by_function / step.duration;
-  out.rate_slope = rate_slope(change);
+void Tendon::begin(const ForceStep& step) const {
+  auto& workspace = static_cast<Workspace&>(*step.workspace);
+  const Memory memory{step.memory, parts_};
+  const Poses poses(step.begin);
+  for (int part = 0; part < parts_; ++part)
+    workspace.part_steps[part] = {{0, straight_rest(poses, memory, part)}, {}, step.duration, step.at_end};
+  workspace.spans.clear();
+  for_each_span(memory, [&](const Span& span) {
+    const PieceEnd here = span.piece.place(poses.of(span.piece), memory.angles(span.first, span.second));
+    workspace.spans.push_back({span, here, here});
+    workspace.part_steps[span.part].begin.length += here.state.value(span.length);
+    workspace.part_steps[span.part].begin.rest += here.state.value(span.rest);
+  });
+  if (!has_rates(step)) return;
+  for (int part = 0; part < parts_; ++part)
+    workspace.begin_rates[part] = stretch_rate(poses, memory, part, step.velocities) - memory.slip_rate(part);
+}
+
+/// Whether forces depend on the rates at the end of the step.
+bool Tendon::has_rates(const ForceStep& step) const {
+  return step.at_end && step.duration != 0 && plan_.law.damping != 0;
+}
+
+/// Finds all spans at the end of the step, their angles, and the lengths of all parts without slip.
+void Tendon::find_end(const ForceStep& step, const Memory& begin, const NewMemory& end, Workspace& workspace) const {
+  const Poses poses(step.end);
+  for (int part = 0; part < parts_; ++part) workspace.part_steps[part].end = {0, straight_rest(poses, end, part)};
+  for (MovedSpan& moved : workspace.spans) {
+    const Span& span = moved.span;
+    moved.end = span.piece.place(poses.of(span.piece), begin.angles(span.first, span.second));
+    end.goes(span.first) = moved.end.state.begin;
+    end.comes(span.second) = moved.end.state.end;
+    workspace.part_steps[span.part].end.length += moved.end.state.value(span.length);
+    workspace.part_steps[span.part].end.rest += moved.end.state.value(span.rest);
+  }
+}
+
+/// The rates of all parts at the end of the step, by the rule for rates.
+void Tendon::find_rates(const ForceStep& step, const Memory& begin, const Memory& end, Workspace& workspace) const {
+  for (int part = 0; part < parts_; ++part) {
+    TendonPartStep& out = workspace.part_steps[part];
+    const double by_function = shares_[part] * (end.function() - begin.function());
+    CoordinateStep change;
+    change.begin_rate = workspace.begin_rates[part];
+    change.gamma = step.gamma;
+    change.step = step.duration;
+    // Without the function, whose rate is that of the step.
+    change.increment = out.end.length - out.end.rest - out.begin.length + out.begin.rest + by_function;
+    out.rate = rate_of(change) - by_function / step.duration;
+    out.rate_slope = rate_slope(change);
+  }
 }
 
 /// The angle by which the line turns at a guide [rad].
@@ -74,9 +92,9 @@ double Tendon::contact_angle(const Poses& poses, const Memory& memory, int guide
 }
 
 /// Finds what the parts do. Returns false if no slip is found with which they are in balance.
-bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Scratch& scratch) const {
-  const std::vector<TendonPartStep>& parts = scratch.part_steps;
-  std::vector<double>& ratios = scratch.ratios;
+bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Workspace& workspace) const {
+  const std::vector<TendonPartStep>& parts = workspace.part_steps;
+  std::vector<double>& ratios = workspace.ratios;
   ratios.clear();
   for (const TendonPartStep& part : parts)
     if (!(part.end.rest > 0)) return false;  // nothing is left of the line
@@ -88,16 +106,18 @@ bool Tendon::find_steps(const ForceStep& step, const Memory& begin, const Memory
         guide.grips ? 0 : 0.5 * (contact_angle(Poses(step.begin), begin, i) + contact_angle(Poses(step.end), end, i));
     ratios.push_back(guide.grips ? TendonSlip::kNever : std::exp(guide.friction * angle));
   }
-  return scratch.slip.solve(plan_.law, parts, ratios);
+  return workspace.slip.solve(plan_.law, parts, ratios);
 }
 
 /// Sums up the directions of all parts, and the derivatives of their lengths at the end. Adds the derivatives of the
 /// directions to the tangent.
-void Tendon::add_directions(const ForceStep& step, Scratch& scratch, ForceAction& action) const {
-  auto& directions = scratch.directions;
-  auto& slopes = scratch.slopes;
+void Tendon::add_directions(const ForceStep& step, Workspace& workspace, ForceAction& action) const {
+  auto& directions = workspace.directions;
+  auto& slopes = workspace.slopes;
   const bool with_slope = action.wants_tangent();
-  for (const MovedSpan& moved : scratch.spans) {
+  for (std::vector<PartForces>* sums : {&directions, &slopes})
+    for (PartForces& sum : *sums) sum.reset(action.residual.size());
+  for (const MovedSpan& moved : workspace.spans) {
     const Span& span = moved.span;
     if (span.first_node == span.second_node) continue;  // on one body: nothing changes
     const auto add = [&](const PieceWeights& weights, double force, Eigen::VectorXd& direction,
@@ -112,7 +132,7 @@ void Tendon::add_directions(const ForceStep& step, Scratch& scratch, ForceAction
       }
       if (with_slope) add_slope(span, force, change.direction_slope, action);
     };
-    const TendonStep& line = scratch.slip.steps()[span.part];
+    const TendonStep& line = workspace.slip.steps()[span.part];
     add(span.length, line.tension, directions[span.part].length, slopes[span.part].length);
     if (span.winds && !plan_.has_tension)
       add(span.rest, line.release, directions[span.part].rest, slopes[span.part].rest);
@@ -134,27 +154,23 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   const FunctionStep function = function_of(step);
   end.function() = function.end;
 
-  Scratch& scratch = this->scratch();
-  TendonSlip& slip = scratch.slip;
-  for (std::vector<PartForces>* sums : {&scratch.directions, &scratch.slopes}) {
-    sums->resize(parts_);
-    for (PartForces& sum : *sums) sum.reset(action.residual.size());
-  }
-  find_spans(step, begin, end, scratch.spans);
-  find_part_steps(step, begin, end, scratch);
+  auto& workspace = static_cast<Workspace&>(*step.workspace);
+  TendonSlip& slip = workspace.slip;
+  find_end(step, begin, end, workspace);
+  if (has_rates(step)) find_rates(step, begin, end, workspace);
   if (plan_.has_tension) {
     slip.set_tension(parts_, step.load_factor * std::max(step.at_end ? function.end : function.mean, 0.0));
-  } else if (!find_steps(step, begin, end, scratch)) {
+  } else if (!find_steps(step, begin, end, workspace)) {
     action.dissipated = std::numeric_limits<double>::quiet_NaN();  // the step fails, also if no node can move
     action.residual.setConstant(action.dissipated);
     return;
   }
-  add_directions(step, scratch, action);
-  add_forces(slip, scratch.directions, scratch.slopes, action);
+  add_directions(step, workspace, action);
+  add_forces(slip, workspace.directions, workspace.slopes, action);
   for (int part = 0; part < parts_; ++part) {
     const TendonStep& line = slip.steps()[part];
     if (plan_.has_tension) {
-      action.work -= line.tension * (scratch.part_steps[part].end.length - scratch.part_steps[part].begin.length);
+      action.work -= line.tension * (workspace.part_steps[part].end.length - workspace.part_steps[part].begin.length);
       continue;
     }
     action.work += line.release * shares_[part] * (end.function() - begin.function());
@@ -166,7 +182,7 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
   // Leaving and touching pulleys changes the length by third powers of small angles. The energy is counted.
   if (!find_touched(Poses(step.end), end) || plan_.has_tension) return;
   for (int part = 0; part < parts_; ++part) {
-    const TendonLengths& line = scratch.part_steps[part].end;
+    const TendonLengths& line = workspace.part_steps[part].end;
     action.dissipated += plan_.law.energy({line.length, line.rest + slip.gain(part)});
   }
   action.dissipated -= energy(Poses(step.end), end);

@@ -25,17 +25,13 @@ inline double value_of(const Dual& x) {
   return x.value();
 }
 
-/// A guide at an instant, world axes. `arm`: from the node to the centre.
 template <class S>
-struct GuideFrame {
-  using V = Eigen::Matrix<S, 3, 1>;
-  V centre, arm, first, second, normal;
-
-  GuideFrame<double> values() const {
-    const auto of = [](const V& v) { return Vector3(value_of(v[0]), value_of(v[1]), value_of(v[2])); };
-    return {of(centre), of(arm), of(first), of(second), of(normal)};
-  }
-};
+GuideFrame<double> values_of(const GuideFrame<S>& frame) {
+  const auto of = [](const Eigen::Matrix<S, 3, 1>& v) {
+    return Vector3(value_of(v[0]), value_of(v[1]), value_of(v[2]));
+  };
+  return {of(frame.centre), of(frame.arm), of(frame.first), of(frame.second), of(frame.normal)};
+}
 
 using so3::cross;
 using so3::dot;

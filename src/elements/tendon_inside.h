@@ -1,8 +1,6 @@
 #pragma once
 /// Views of the data of a tendon (internal to tendon.cpp and tendon_forces.cpp).
 
-#include <map>
-#include <utility>
 #include <vector>
 
 #include "elements/tendon.h"
@@ -68,20 +66,13 @@ struct Tendon::PartForces {
   void reset(Eigen::Index size) { length.setZero(size), rest.setZero(size); }
 };
 
-/// Memory for the evaluation of lines with so many parts and numbers. It is kept for each size, so that lines of
-/// different sizes do not allocate in turns.
-struct Tendon::Scratch {
+struct Tendon::Workspace : ForceWorkspace {
+  std::vector<MovedSpan> spans;            // along the line
+  std::vector<TendonPartStep> part_steps;  // without slip
+  std::vector<double> begin_rates;         // per part, without slip and function [m/s]
   TendonSlip slip;
-  std::vector<MovedSpan> spans;
-  std::vector<TendonPartStep> part_steps;
   std::vector<double> ratios;
   std::vector<PartForces> directions, slopes;
-  PartForces gradient;
-
-  static Scratch& of(int parts, std::size_t numbers) {
-    thread_local std::map<std::pair<int, std::size_t>, Scratch> all;
-    return all[{parts, numbers}];
-  }
 };
 
 template <class Visit>

@@ -9,21 +9,20 @@ double nearest_turn(double angle, double reference) {
 }
 
 PieceState TendonPiece::find(const PiecePoses& poses, const PieceState& near) const {
-  const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
-                                   to = tendon::frame_of(second_, poses.second);
-  const tendon::Angles rough = tendon::rough_tangents(first_, second_, from, to);
-  return state_at(poses, rough.begin, rough.end, near);
+  const PieceEnd guides{tendon::frame_of(first_, poses.first), tendon::frame_of(second_, poses.second), {}};
+  const tendon::Angles rough = tendon::rough_tangents(first_, second_, guides.first, guides.second);
+  return state_at(guides, rough.begin, rough.end, near);
 }
 
-PieceState TendonPiece::follow(const PiecePoses& poses, const PieceState& near) const {
-  const PieceState out = state_at(poses, near.begin, near.end, near);
-  return std::isfinite(out.length) ? out : find(poses, near);
+PieceEnd TendonPiece::place(const PiecePoses& poses, const PieceState& near) const {
+  PieceEnd out{tendon::frame_of(first_, poses.first), tendon::frame_of(second_, poses.second), {}};
+  out.state = state_at(out, near.begin, near.end, near);
+  if (!std::isfinite(out.state.length)) out.state = find(poses, near);
+  return out;
 }
 
-PieceState TendonPiece::state_at(const PiecePoses& poses, double begin, double end, const PieceState& near) const {
-  const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
-                                   to = tendon::frame_of(second_, poses.second);
-  const auto [angles, way] = tendon::tangents_near(first_, second_, from, to, {begin, end});
+PieceState TendonPiece::state_at(const PieceEnd& guides, double begin, double end, const PieceState& near) const {
+  const auto [angles, way] = tendon::tangents_near(first_, second_, guides.first, guides.second, {begin, end});
   return {tendon::length_of(way), nearest_turn(angles.begin, near.begin), nearest_turn(angles.end, near.end)};
 }
 

@@ -29,6 +29,10 @@ double nearest_turn(double angle, double reference);
 struct PieceWeights {
   double straight = 0;        ///< [-]
   double begin = 0, end = 0;  ///< [m/rad]
+
+  PieceWeights operator-(const PieceWeights& other) const {
+    return {straight - other.straight, begin - other.begin, end - other.end};
+  }
 };
 
 /// A straight piece at one instant. Angles are those of the tangent points, and count over whole turns.
@@ -56,9 +60,20 @@ struct PiecePoses {
   NodePose first, second;
 };
 
-/// A piece at one end of a step.
+namespace tendon {
+
+/// A guide at an instant, world axes. `arm`: from the node to the centre. `S`: double, or a number with derivatives.
+template <class S>
+struct GuideFrame {
+  using V = Eigen::Matrix<S, 3, 1>;
+  V centre, arm, first, second, normal;
+};
+
+}  // namespace tendon
+
+/// A piece at one end of a step, with its guides.
 struct PieceEnd {
-  PiecePoses poses;
+  tendon::GuideFrame<double> first, second;
   PieceState state;
 };
 
@@ -73,7 +88,9 @@ class TendonPiece {
   /// The piece at an instant. Its angles differ from those of `near` by less than half a turn.
   PieceState find(const PiecePoses& poses, const PieceState& near) const;
   /// The same, faster if the angles differ little.
-  PieceState follow(const PiecePoses& poses, const PieceState& near) const;
+  PieceState follow(const PiecePoses& poses, const PieceState& near) const { return place(poses, near).state; }
+  /// The same with the guides.
+  PieceEnd place(const PiecePoses& poses, const PieceState& near) const;
   /// Gradient of a functional by {displacement, spin} of both nodes, world axes. `here`: the piece at these poses.
   Vector12 gradient(const PiecePoses& poses, const PieceState& here, const PieceWeights& weights) const;
   /// The change of a functional over a step, by a discrete gradient that depends on scalar products of the bodies'
@@ -83,7 +100,7 @@ class TendonPiece {
                      bool with_slope) const;
 
  private:
-  PieceState state_at(const PiecePoses& poses, double begin, double end, const PieceState& near) const;
+  PieceState state_at(const PieceEnd& guides, double begin, double end, const PieceState& near) const;
 
   GuidePlace first_, second_;
 };

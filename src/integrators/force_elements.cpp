@@ -45,6 +45,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
     memory += element->memory_size();
     functions += static_cast<int>(element->functions().size());
     may_be_far_ = may_be_far_ || element->hits();
+    workspaces_.push_back(element->make_workspace());
   }
   residual_.resize(most);
   tangent_.resize(numbers);
@@ -88,11 +89,12 @@ void ForceElements::begin(TangentBackend& tangent) {
       may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
     }
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
+    if (acts_[k]) elements[k]->begin(step_of(k, step()));
   }
 }
 
-/// The data of the step, without the elements' memory.
-ForceStep ForceElements::step() {
+/// The data of the step that are the same for all elements.
+ForceStep ForceElements::step() const {
   const Scheme& scheme = configuration_.scheme();
   ForceStep step{configuration_.begin(), configuration_.end(), velocities_};
   step.duration = configuration_.step();
@@ -102,18 +104,21 @@ ForceStep ForceElements::step() {
   return step;
 }
 
+ForceStep ForceElements::step_of(std::size_t k, ForceStep step) {
+  step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
+  step.new_memory = memory_.data() + memory_begins_[k];
+  step.functions = functions_.data() + function_begins_[k];
+  step.workspace = workspaces_[k].get();
+  return step;
+}
+
 void ForceElements::evaluate(Balance& balance) {
   if (nodes_.empty()) return;
-  ForceStep step = this->step();
+  const ForceStep step = this->step();
   work_ = 0;
   not_finite_ = -1;
-  for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    if (!acts_[k]) continue;
-    step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
-    step.new_memory = memory_.data() + memory_begins_[k];
-    step.functions = functions_.data() + function_begins_[k];
-    evaluate(k, step, balance);
-  }
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    if (acts_[k]) evaluate(k, step_of(k, step), balance);
 }
 
 void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& balance) {
@@ -145,9 +150,7 @@ bool ForceElements::need_halves(double refinement) {
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
     if (far_.stays_far(k)) continue;
-    step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
-    step.functions = functions_.data() + function_begins_[k];
-    if (elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
+    if (elements[k]->needs_halves(step_of(k, step), nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
   }
   return false;
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// Force elements between points of links (springs, contacts), over a step or in an equilibrium.
 
+#include <memory>
 #include <vector>
 
 #include "integrators/balance.h"
@@ -34,7 +35,8 @@ class ForceElements {
   void accept(State& state) const;
 
  private:
-  ForceStep step();
+  ForceStep step() const;
+  ForceStep step_of(std::size_t k, ForceStep step);
   void find_functions();
   void evaluate(std::size_t k, const ForceStep& step, Balance& balance);
 
@@ -48,6 +50,7 @@ class ForceElements {
   std::vector<int> function_begins_;     // per element: index into functions_
   std::vector<Vector6> velocities_;      // per node: {v, w} at the beginning of the step
   std::vector<double> residual_, tangent_, memory_;
+  std::vector<std::unique_ptr<ForceWorkspace>> workspaces_;  // per element
   double work_ = 0;
   int not_finite_ = -1;
   bool may_hit_ = false;

@@ -37,6 +37,15 @@ struct FunctionStep {
   double mean = 0;  ///< only for elements that use means, see ForceElement::uses_means()
 };
 
+/// What an element finds at the beginning of a step and uses in each of its evaluations. An element that needs it
+/// derives its own kind.
+struct ForceWorkspace {
+  ForceWorkspace() = default;
+  ForceWorkspace(const ForceWorkspace&) = delete;
+  ForceWorkspace& operator=(const ForceWorkspace&) = delete;
+  virtual ~ForceWorkspace() = default;
+};
+
 /// The step or equilibrium for which a force element is evaluated.
 struct ForceStep {
   const std::vector<NodePose>& begin;  ///< of all nodes
@@ -50,6 +59,7 @@ struct ForceStep {
   const FunctionStep* functions = nullptr;  ///< one for each of functions()
   const double* memory = nullptr;           ///< the element's memory at the beginning, memory_size() numbers
   double* new_memory = nullptr;             ///< output: the memory at the end, memory_size() numbers
+  ForceWorkspace* workspace = nullptr;      ///< the element's own, in which begin() has begun the step
 };
 
 /// How the tangent of a force element that acts on many nodes is composed: of blocks of two nodes each, its pieces, and
@@ -194,6 +204,11 @@ class ForceElement {
   // ---- forces and energy
   // `nodes`: as find_nodes() has written them.
 
+  /// Makes a workspace for steps, with all memory that they need. Null: the element needs none.
+  virtual std::unique_ptr<ForceWorkspace> make_workspace() const { return nullptr; }
+  /// Begins a step, before all its evaluations: writes to the workspace what depends on the beginning only. The end is
+  /// not known yet.
+  virtual void begin(const ForceStep& step) const { static_cast<void>(step); }
   /// Computes the contribution to the balance of a step. Not called if the element acts on no nodes and has no memory.
   virtual void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const = 0;
   /// Whether a solved step is too long for the events in it, so that it must be repeated in halves. Also true if the

@@ -9,6 +9,7 @@
 #include "elements/tendon.h"
 #include "math/pi.h"
 #include "support/node_poses.h"
+#include "support/whole_step.h"
 
 namespace flexarm::test {
 namespace {
@@ -121,9 +122,9 @@ TEST(LongTendons, HaveTheSameTangentInPieces) {
         ForceAction parts{
             {residuals[1].data(), size}, {nullptr, 0, 0}, PieceTangent::in(numbers.data(), pieces, nodes)};
         step.new_memory = memories[0].data();
-        tendon.evaluate(step, tendon.reach().data(), whole);
+        evaluate_step(tendon, step, whole);
         step.new_memory = memories[1].data();
-        tendon.evaluate(step, tendon.reach().data(), parts);
+        evaluate_step(tendon, step, parts);
         EXPECT_EQ(residuals[0], residuals[1]) << tested.name;
         EXPECT_EQ(memories[0], memories[1]) << tested.name;
         EXPECT_EQ(whole.dissipated, parts.dissipated) << tested.name;

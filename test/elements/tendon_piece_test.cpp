@@ -99,14 +99,15 @@ TEST(TendonPiece, HasItsDerivatives) {
     for (const PieceWeights& weights : kWeights)
       for (const bool at_end : {false, true}) {
         const PieceState before = piece.find(begin, {}), near = piece.find(end, before);
-        const PieceChange here = piece.change({begin, before}, {end, near}, weights, at_end, true);
+        const PieceEnd from = piece.place(begin, before);
+        const PieceChange here = piece.change(from, piece.place(end, near), weights, at_end, true);
         for (int k = 0; k < 12; ++k) {
           if (k < 6 && piece.first().node < 0) continue;
           const Vector12 way = h * Vector12::Unit(k);
           const auto value = [&](double sign) { return piece.find(moved_by(end, sign * way), near).value(weights); };
           const auto direction = [&](double sign) {
             const PiecePoses at = moved_by(end, sign * way);
-            return piece.change({begin, before}, {at, piece.follow(at, near)}, weights, at_end, false).direction;
+            return piece.change(from, piece.place(at, near), weights, at_end, false).direction;
           };
           EXPECT_NEAR(here.end_gradient[k], (value(1) - value(-1)) / (2 * h), 3e-9) << name << k;
           const Vector12 slope = (direction(1) - direction(-1)) / (2 * h);
@@ -123,7 +124,8 @@ TEST(TendonPiece, ChangesExactlyByItsDirection) {
   for (const auto& [name, piece, begin, end] : piece_cases())
     for (const PieceWeights& weights : kWeights) {
       const PieceState before = piece.find(begin, {}), after = piece.find(end, before);
-      const Vector12 direction = piece.change({begin, before}, {end, after}, weights, false, false).direction;
+      const Vector12 direction =
+          piece.change(piece.place(begin, before), piece.place(end, after), weights, false, false).direction;
       EXPECT_NEAR(direction.dot(motion(begin, end)), after.value(weights) - before.value(weights), 1e-14) << name;
     }
 }
@@ -134,7 +136,8 @@ TEST(TendonPiece, AddsToNoMomentum) {
     for (const PieceWeights& weights : kWeights)
       for (const bool at_end : {false, true}) {
         const PieceState before = piece.find(begin, {}), after = piece.find(end, before);
-        const Vector12 force = piece.change({begin, before}, {end, after}, weights, at_end, false).direction;
+        const Vector12 force =
+            piece.change(piece.place(begin, before), piece.place(end, after), weights, at_end, false).direction;
         const double weight = at_end ? 1 : 0.5;
         const auto mean = [&](const NodePose& a, const NodePose& b) {
           return Vector3((1 - weight) * a.position + weight * b.position);

@@ -10,6 +10,7 @@
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "support/node_poses.h"
+#include "support/whole_step.h"
 
 namespace flexarm::test {
 namespace {
@@ -91,7 +92,7 @@ TendonAction action_of(const Tendon& tendon, const TendonCase& tested, const Pos
   TendonAction out{Eigen::VectorXd(size), Eigen::MatrixXd(size, size), 0, 0, memory};
   step.new_memory = out.memory.data();
   ForceAction action{{out.residual.data(), size}, {out.tangent.data(), size, size}};
-  tendon.evaluate(step, tendon.reach().data(), action);
+  evaluate_step(tendon, step, action);
   out.dissipated = action.dissipated;
   out.work = action.work;
   return out;
@@ -193,7 +194,7 @@ TEST(TendonRims, CarryTheLineFromOnePartToTheOther) {
     step.new_memory = after.data();
     Eigen::VectorXd residual(18);
     ForceAction action{{residual.data(), 18}, {nullptr, 0, 0}};
-    tendon.evaluate(step, tendon.reach().data(), action);
+    evaluate_step(tendon, step, action);
     const double tension = stiffness * radius * angle / (1 - radius * angle);
     EXPECT_NEAR(residual[1], -tension, 1e-12);
     EXPECT_EQ(residual[13], 0);
