@@ -60,7 +60,8 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
   return action;
 }
 
-NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node) {
+NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
+                                 bool with_tangent) {
   assert(node.step != 0);
   NodalAction action;
   const Matrix3& D = inertia.rotary_damping;
@@ -73,8 +74,9 @@ NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& ru
     const Vector3 Omega = begin.transpose() * node.increment, rate = D * Omega / node.step;
     const Matrix3 mean = 0.5 * (begin + end);
     action.residual.tail<3>() = mean * rate;
-    action.rotational =
-        mean * D * begin.transpose() * node.inverse_tangent / node.step - 0.5 * so3::hat(Vector3(end * rate));
+    if (with_tangent)
+      action.rotational =
+          mean * D * begin.transpose() * node.inverse_tangent / node.step - 0.5 * so3::hat(Vector3(end * rate));
     action.dissipated = Omega.dot(rate);
     return action;
   }
@@ -85,9 +87,10 @@ NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& ru
       newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
   const Vector3 moment = end * (D * newmark.velocity(spin.angular_velocity, spin.angular_acceleration, A));
   action.residual.tail<3>() = (1 + newmark.alpha) * moment - newmark.alpha * (begin * (D * spin.angular_velocity));
-  action.rotational =
-      (1 + newmark.alpha) *
-      (end * D * begin.transpose() * so3::inverse_tangent(increment) * newmark.velocity_slope() - so3::hat(moment));
+  if (with_tangent)
+    action.rotational =
+        (1 + newmark.alpha) *
+        (end * D * begin.transpose() * so3::inverse_tangent(increment) * newmark.velocity_slope() - so3::hat(moment));
   action.dissipated = action.residual.tail<3>().dot(increment);
   return action;
 }

@@ -40,7 +40,8 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
                                  bool with_tangent = true);
 
 /// Returns the mass-proportional damping of the beams' rotation, which is lumped at the node.
-NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node);
+NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
+                                 bool with_tangent = true);
 
 /// Returns d(Lambda J W)/dt [N m].
 inline Vector3 momentum_rate(const Matrix3& rotation, const Matrix3& inertia, const MassPointState& motion) {

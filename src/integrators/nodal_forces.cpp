@@ -45,7 +45,8 @@ void NodalForces::add_damping(int node, Balance& balance) const {
   const Matrix3 inverse_tangent = balance.tangent ? cayley::inverse_tangent(increment) : Matrix3::Identity();
   const NodalAction damping = nodal_damping_action(
       step.model().inertias[node], step.scheme(),
-      {step.begin()[node], step.end()[node], step.state().nodes[node], increment, inverse_tangent, step.step()});
+      {step.begin()[node], step.end()[node], step.state().nodes[node], increment, inverse_tangent, step.step()},
+      balance.tangent != nullptr);
   Eigen::Matrix<double, 6, 3> rotational = Eigen::Matrix<double, 6, 3>::Zero();
   rotational.bottomRows<3>() = damping.rotational;
   add(node, damping.residual, rotational, false, balance.tangent != nullptr, balance);
