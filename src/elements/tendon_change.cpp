@@ -93,7 +93,7 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
   if constexpr (std::is_same_v<S, double>)
     out.end = after.value(weights);
   else
-    out.end = functional(a, b, end_a, end_b, weights, end);
+    out.end = functional(a, b, weights, with_derivatives(a, b, end_a, end_b, end));
   const double weight = at_end ? 1 : 0.5;
   const GuideFrame<S> mean_a = mixed(begin_a, end_a, weight), mean_b = mixed(begin_b, end_b, weight);
   if (!a.is_circle() && !b.is_circle() && !at_end) {
@@ -108,8 +108,13 @@ Change<S> change_of(const GuidePlace& a, const GuidePlace& b, const GuideFrame<d
     return out;
   }
   const Angles middle{(1 - weight) * begin.begin + weight * end.begin, (1 - weight) * begin.end + weight * end.end};
-  const Angles mean = tangents_near(a, b, values_of(mean_a), values_of(mean_b), middle).angles;
-  const VectorGradient<S> gradient = vector_gradient(a, b, mean_a, mean_b, weights, mean);
+  const Chord<double> mean = tangents_near(a, b, values_of(mean_a), values_of(mean_b), middle);
+  const VectorGradient<S> gradient = [&] {
+    if constexpr (std::is_same_v<S, double>)
+      return vector_gradient(a, b, weights, mean);
+    else
+      return vector_gradient(a, b, weights, with_derivatives(a, b, mean_a, mean_b, {mean.begin, mean.end}));
+  }();
   out.direction = gradient.on_nodes(mean_a, mean_b);
   if (at_end) return out;
   const Correction<S> correction(a, b, begin_a, end_a, begin_b, end_b);

@@ -98,13 +98,15 @@ struct Rim {
 /// points; `slopes`: their derivatives by both angles.
 template <class S>
 struct Chord {
+  S begin, end;  // angles
   Rim<S> first, second;
   Eigen::Matrix<S, 3, 1> way;
   std::array<S, 2> open{S(0), S(0)};
   std::array<std::array<S, 2>, 2> slopes{{{S(1), S(0)}, {S(0), S(1)}}};
 
-  Chord(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from, const GuideFrame<S>& to, const S& begin,
-        const S& end) {
+  Chord(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from, const GuideFrame<S>& to,
+        const S& begin_angle, const S& end_angle)
+      : begin(begin_angle), end(end_angle) {
     if (a.is_circle()) first = Rim<S>(from, begin);
     if (b.is_circle()) second = Rim<S>(to, end);
     for (int i = 0; i < 3; ++i) {
@@ -160,52 +162,43 @@ inline Angles rough_tangents(const GuidePlace& a, const GuidePlace& b, const Gui
 
 /// The angles after a step of Newton's method towards the tangent points.
 template <class S>
-std::array<S, 2> newton_step(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from,
-                             const GuideFrame<S>& to, const Angles& angles) {
-  const Chord<S> chord(a, b, from, to, S(angles.begin), S(angles.end));
+std::array<S, 2> newton_step(const Chord<S>& chord) {
   const double s00 = value_of(chord.slopes[0][0]), s01 = value_of(chord.slopes[0][1]);
   const double s10 = value_of(chord.slopes[1][0]), s11 = value_of(chord.slopes[1][1]);
   const double determinant = s00 * s11 - s01 * s10;
-  return {S(angles.begin - (chord.open[0] * s11 - chord.open[1] * s01) / determinant),
-          S(angles.end - (chord.open[1] * s00 - chord.open[0] * s10) / determinant)};
+  return {S(chord.begin - (chord.open[0] * s11 - chord.open[1] * s01) / determinant),
+          S(chord.end - (chord.open[1] * s00 - chord.open[0] * s10) / determinant)};
 }
 
-/// The angles at a solution, with their derivatives: the values are the solution's, which a step would not improve.
-inline std::array<double, 2> with_derivatives(const GuidePlace&, const GuidePlace&, const GuideFrame<double>&,
-                                              const GuideFrame<double>&, const Angles& angles) {
-  return {angles.begin, angles.end};
-}
-inline std::array<Dual, 2> with_derivatives(const GuidePlace& a, const GuidePlace& b, const GuideFrame<Dual>& from,
-                                            const GuideFrame<Dual>& to, const Angles& angles) {
-  return newton_step(a, b, from, to, angles);
+/// The chord between the tangent points at `solution`, with its derivatives.
+inline Chord<Dual> with_derivatives(const GuidePlace& a, const GuidePlace& b, const GuideFrame<Dual>& from,
+                                    const GuideFrame<Dual>& to, const Angles& solution) {
+  const auto [begin, end] = newton_step(Chord<Dual>(a, b, from, to, Dual(solution.begin), Dual(solution.end)));
+  return {a, b, from, to, begin, end};
 }
 
-/// Tangent points, and the vector from the first to the second.
-struct Tangent {
-  Angles angles;
-  Vector3 way;
-};
-
-/// The tangent points by Newton's method. NaN if it does not converge, or to points where the line would run the other
-/// way round a circle.
-inline Tangent tangents_near(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& from,
-                             const GuideFrame<double>& to, Angles out) {
-  if (!a.is_circle() && !b.is_circle()) return {out, to.centre - from.centre};
+/// The chord between the tangent points by Newton's method. NaN if it does not converge, or to points where the line
+/// would run the other way round a circle.
+inline Chord<double> tangents_near(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& from,
+                                   const GuideFrame<double>& to, const Angles& guess) {
+  Chord<double> chord(a, b, from, to, guess.begin, guess.end);
+  if (!a.is_circle() && !b.is_circle()) return chord;
   for (int iteration = 0; iteration < 10; ++iteration) {
-    const std::array<double, 2> next = newton_step<double>(a, b, from, to, out);
-    const double size = std::abs(next[0] - out.begin) + std::abs(next[1] - out.end);
-    out = {next[0], next[1]};
+    const auto [begin, end] = newton_step(chord);
+    const double size = std::abs(begin - chord.begin) + std::abs(end - chord.end);
+    chord = Chord<double>(a, b, from, to, begin, end);
     if (size < 1e-7) {  // the next correction is below round-off
-      const Chord<double> chord(a, b, from, to, out.begin, out.end);
       const bool is_turned = (a.is_circle() && a.sense * dot(chord.way, chord.first.along) < 0) ||
                              (b.is_circle() && b.sense * dot(chord.way, chord.second.along) < 0);
-      if (!is_turned) return {out, chord.way};
+      if (!is_turned) return chord;
       break;
     }
     if (!(size < kPi)) break;
   }
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return {{none, none}, Vector3::Constant(none)};
+  chord.begin = chord.end = none;
+  chord.way.setConstant(none);
+  return chord;
 }
 
 /// The length of a piece. A piece of length zero has no direction; so a length is never smaller than kShortest, and all
@@ -248,11 +241,9 @@ struct VectorGradient {
 };
 
 template <class S>
-VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from,
-                                  const GuideFrame<S>& to, const PieceWeights& weights, const Angles& angles) {
+VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, const PieceWeights& weights,
+                                  const Chord<S>& chord) {
   using V = Eigen::Matrix<S, 3, 1>;
-  const std::array<S, 2> at = with_derivatives(a, b, from, to, angles);
-  const Chord<S> chord(a, b, from, to, at[0], at[1]);
   const S length = length_of(chord.way);
   const V unit = chord.way / length;
   // Multipliers of the conditions of tangency: they carry what the angles contribute.
@@ -276,15 +267,12 @@ VectorGradient<S> vector_gradient(const GuidePlace& a, const GuidePlace& b, cons
   return out;
 }
 
-/// The functional at an instant.
+/// The functional of a chord between tangent points.
 template <class S>
-S functional(const GuidePlace& a, const GuidePlace& b, const GuideFrame<S>& from, const GuideFrame<S>& to,
-             const PieceWeights& weights, const Angles& angles) {
-  const std::array<S, 2> at = with_derivatives(a, b, from, to, angles);
-  const Chord<S> chord(a, b, from, to, at[0], at[1]);
+S functional(const GuidePlace& a, const GuidePlace& b, const PieceWeights& weights, const Chord<S>& chord) {
   S out = weights.straight * length_of(chord.way);
-  if (a.is_circle()) out += weights.begin * at[0];
-  if (b.is_circle()) out += weights.end * at[1];
+  if (a.is_circle()) out += weights.begin * chord.begin;
+  if (b.is_circle()) out += weights.end * chord.end;
   return out;
 }
 

@@ -22,14 +22,15 @@ PieceEnd TendonPiece::place(const PiecePoses& poses, const PieceState& near) con
 }
 
 PieceState TendonPiece::state_at(const PieceEnd& guides, double begin, double end, const PieceState& near) const {
-  const auto [angles, way] = tendon::tangents_near(first_, second_, guides.first, guides.second, {begin, end});
-  return {tendon::length_of(way), nearest_turn(angles.begin, near.begin), nearest_turn(angles.end, near.end)};
+  const tendon::Chord<double> chord = tendon::tangents_near(first_, second_, guides.first, guides.second, {begin, end});
+  return {tendon::length_of(chord.way), nearest_turn(chord.begin, near.begin), nearest_turn(chord.end, near.end)};
 }
 
 Vector12 TendonPiece::gradient(const PiecePoses& poses, const PieceState& here, const PieceWeights& weights) const {
   const tendon::GuideFrame<double> from = tendon::frame_of(first_, poses.first),
                                    to = tendon::frame_of(second_, poses.second);
-  return tendon::vector_gradient<double>(first_, second_, from, to, weights, {here.begin, here.end}).on_nodes(from, to);
+  const tendon::Chord<double> chord(first_, second_, from, to, here.begin, here.end);
+  return tendon::vector_gradient(first_, second_, weights, chord).on_nodes(from, to);
 }
 
 }  // namespace flexarm
