@@ -44,11 +44,7 @@ bool DissipativeSubstitute::advance(State& state, const Deadline& deadline, Step
   const double memory_at_beginning =
       energies(model_, dissipative_, trial_).strain - energies(model_, scheme_, begin_).strain;
   const StepResult made = stepper_.advance(trial_, deadline);
-  result.iterations += made.iterations;
-  result.factorisations += made.factorisations;
-  result.halvings += made.halvings;
-  result.other_guesses += made.other_guesses;
-  result.deepest_halving = std::max(result.deepest_halving, made.deepest_halving);
+  result.add_effort(made);
   result.largest_rotation = made.largest_rotation;
   result.turning_node = made.turning_node;
   result.failure.tried_dissipation = true;

@@ -187,6 +187,16 @@ bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
   return line.overshoot(to) <= largest_overshoot(joint) && pieces <= SlideLine::kMostPieces;
 }
 
+double StepConfiguration::largest_way_beyond() const {
+  double largest = 0;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    if (joint.leaving < 0) continue;
+    largest = std::max(largest, model_.slide_lines[joint.line].overshoot(released_[j].displacement[0]));
+  }
+  return largest;
+}
+
 void StepConfiguration::note_events(FirstEvent& first) const {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];

@@ -80,6 +80,8 @@ class StepConfiguration {
   int off_line_joint() const { return off_line_joint_; }  ///< the first such joint; -1: none
   /// Whether a prescribed motion is the cause, so that no shorter step can help.
   bool is_driven_off_line() const;
+  /// How far a slider that may leave its line is beyond the end at most, relative to the length of the element there.
+  double largest_way_beyond() const;
   /// Notes when sliders that may leave their lines reach the ends of these.
   void note_events(FirstEvent& first) const;
 

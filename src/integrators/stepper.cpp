@@ -8,6 +8,7 @@
 #include "integrators/dissipative_substitute.h"
 #include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
+#include "model/line_release.h"
 #include "model/room_for_wrenches.h"
 
 namespace flexarm {
@@ -25,6 +26,9 @@ constexpr int kMostHalvings = 500;
 /// The sub-step is doubled after this number of converged sub-steps. With a search for events, sub-steps are short for
 /// a reason, and doubling them early would fail too often.
 constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
+/// A step that ends when a slider leaves its line ends before the slider is this far beyond the end, relative to the
+/// length of the last element.
+constexpr double kLateRelease = 1e-3;
 /// Number of halvings of a step in which forces have a kink, whose error is proportional to the square of the step.
 constexpr int kKinkHalvings = 3;
 
@@ -93,6 +97,9 @@ StepResult::Reason Stepper::flaw_of_solution(const State& state, double step, St
   const bool may_halve =
       state.halving_level < finest_halving(settings_) && result.halvings < refinement * kMostHalvings;
   if (may_halve && system_.hits_too_fast(refinement)) return StepResult::Reason::HitTooFast;
+  const bool may_find_release = ends_at_release_ && state.halving_level < settings_.max_halvings;
+  if (may_find_release && system_.configuration().largest_way_beyond() > kLateRelease)
+    return StepResult::Reason::HitTooFast;
   return settings_.events.is_on() ? flaw_by_events(state, step, result) : StepResult::Reason::None;
 }
 
@@ -117,6 +124,14 @@ StepResult Stepper::advance(State& state) {
   return advance(state, Deadline(settings_.recovery_wall_time));
 }
 
+StepResult Stepper::advance_until_release(State& state) {
+  ends_at_release_ = !settings_.events.is_on() && std::any_of(model_.joints.begin(), model_.joints.end(),
+                                                              [](const auto& j) { return j.leaving >= 0; });
+  const StepResult result = advance(state);
+  ends_at_release_ = false;
+  return result;
+}
+
 StepResult Stepper::advance(State& state, const Deadline& deadline) {
   using Reason = StepResult::Reason;
   const FlushSubnormals flush;
@@ -133,31 +148,49 @@ StepResult Stepper::advance(State& state, const Deadline& deadline) {
 StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   StepResult result;
   begin_ = state.time;
+  rest_ = 0;
+  state.halving_level = std::clamp(state.halving_level, 0, finest_halving(settings_));
+  state.drives.begin();
+  state.transmitted.begin();
+  if (follower_) follower_->begin_step();
+  if (!do_sub_steps(state, deadline, result)) return result;
+  const double done = settings_.step - rest_;
+  state.time = begin_ + done;
+  state.drives.end(done);
+  state.transmitted.end(done);
+  if (follower_) follower_->end_step(done);
+  if (rest_ == 0) ++state.steps;
+  result.converged = true;
+  return result;
+}
+
+bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& result) {
   const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);
   std::int64_t done = 0;  // in units of step / 2^finest
   const std::int64_t whole = parts_of_step(finest);
-  state.halving_level = std::clamp(state.halving_level, 0, finest);
-  state.drives.begin();
-  state.transmitted.begin();
-  if (follower_) follower_->begin_step();
+  const auto give_up = [&](bool is_late) {
+    result = this->give_up(is_late, result);
+    return false;
+  };
   while (done < whole) {
     const int level = state.halving_level;
     const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
     const bool is_late = level > 0 && deadline.has_passed();
     result.deepest_halving = std::max(result.deepest_halving, level);
-    if (!is_done && result.reason == StepResult::Reason::EventWithin) return result;
+    if (!is_done && result.reason == StepResult::Reason::EventWithin) return false;
     if (!is_done) {
       state.good_steps = 0;
       const bool may_halve = level < (system_.may_hit() ? finest : settings_.max_halvings);
-      if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false, result);
+      if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false);
       ++state.halving_level;
       ++result.halvings;
-      if (is_late) return give_up(true, result);  // after the halving, so that the next call starts with a shorter step
+      if (is_late) return give_up(true);  // after the halving, so that the next call starts with a shorter step
       continue;
     }
     done += whole >> level;
-    if (is_late && done < whole) return give_up(is_late, result);
+    if (ends_at_release_ && slide_beyond_end(model_, state) >= 0) break;
+    if (is_late && done < whole) return give_up(is_late);
     state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
     // A doubled sub-step must begin at a multiple of its own length.
     if (state.good_steps >= good_steps && level > 0 && done % (whole >> (level - 1)) == 0) {
@@ -165,13 +198,8 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
       state.good_steps = 0;
     }
   }
-  state.time = begin_ + settings_.step;
-  state.drives.end(settings_.step);
-  state.transmitted.end(settings_.step);
-  if (follower_) follower_->end_step(settings_.step);
-  ++state.steps;
-  result.converged = true;
-  return result;
+  rest_ = std::ldexp(settings_.step, -finest) * static_cast<double>(whole - done);
+  return true;
 }
 
 StepResult Stepper::give_up(bool is_late, StepResult result) {

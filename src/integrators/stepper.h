@@ -26,6 +26,11 @@ class Stepper {
   StepResult advance(State& state);
   /// The same with a deadline that is already running.
   StepResult advance(State& state, const Deadline& deadline);
+  /// The same, but the step ends early, soon after a slider has come to the end of a line that it may leave
+  /// (JointMap::leaving). The caller then changes the model. Steps with a search for events do not end early.
+  StepResult advance_until_release(State& state);
+  /// What is left of a step that has ended early [s]; 0: nothing.
+  double rest() const { return rest_; }
   /// After a step with Reason::EventWithin: time of the event, counted from the beginning of the step [s].
   double event() const { return event_; }
   /// Adds the scheme's own data to an initial state. Accelerations (Newmark family) come from a short
@@ -50,6 +55,8 @@ class Stepper {
 
  private:
   StepResult advance_by_scheme(State& state, const Deadline& deadline);
+  /// Does sub-steps until the step is done, it fails, or a slider leaves. Returns false if it fails.
+  bool do_sub_steps(State& state, const Deadline& deadline, StepResult& result);
   /// Completes the result of a failed step with the place and the reason.
   StepResult give_up(bool is_late, StepResult result);
   StepResult initialise_accelerations(State& state);
@@ -72,6 +79,8 @@ class Stepper {
   std::unique_ptr<DissipativeSubstitute> substitute_;  // null unless OnFailure::Dissipate
   State before_;                                       // state at the beginning of a composed step, to undo it
   double begin_ = 0, event_ = 0;                       // start of the whole step; time from there to the event [s]
+  double rest_ = 0;                                    // what is left of the step after a slider has left its line [s]
+  bool ends_at_release_ = false;
   StepObserver* observer_ = nullptr;
   StepFollower* follower_ = nullptr;
 };

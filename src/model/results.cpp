@@ -55,6 +55,15 @@ const char* to_string(StepResult::Reason reason) {
   return "unknown";
 }
 
+void StepResult::add_effort(const StepResult& other) {
+  iterations += other.iterations;
+  factorisations += other.factorisations;
+  halvings += other.halvings;
+  other_guesses += other.other_guesses;
+  deepest_halving = std::max(deepest_halving, other.deepest_halving);
+  is_dissipated = is_dissipated || other.is_dissipated;
+}
+
 void StepCounts::add(const StepResult& result) {
   ++steps;
   iterations += result.iterations;

@@ -148,13 +148,34 @@ struct Simulation::Implementation {
     return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
   }
 
-  void release_from_lines() {
-    for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
+  /// Makes a step. Sliders that leave their lines in it become free at that time.
+  StepResult advance() {
+    const double end = state.time + settings.step;
+    StepResult result = stepper->advance_until_release(state);
+    double rest = stepper->rest();
+    while (release_from_lines() && rest > 0) {
+      state.halving_level = state.good_steps = 0;
+      stepper->set_step(rest, settings.events);
+      StepResult last = stepper->advance_until_release(state);
+      last.add_effort(result);
+      result = last;
+      rest = stepper->rest();
+      stepper->set_step(settings.step, settings.events);
+      if (result.converged && rest == 0) state.time = end;
+    }
+    return result;
+  }
+
+  /// Whether a slider has left its line.
+  bool release_from_lines() {
+    bool is_released = false;
+    for (int slide; (slide = slide_beyond_end(model, state)) >= 0; is_released = true) {
       State released = state_after_release(model, state, slide);
       if (!built) built = std::make_unique<const Model>(model);
       set_model(model_after_release(model, state, slide));
       state = std::move(released);
     }
+    return is_released;
   }
 
   void set_model(Model changed) {

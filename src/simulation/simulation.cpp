@@ -59,8 +59,7 @@ const scene::Diagnostics& Simulation::start_warnings() const {
 }
 
 StepResult Simulation::step() {
-  StepResult result = implementation_->stepper->advance(implementation_->state);
-  implementation_->release_from_lines();
+  const StepResult result = implementation_->advance();
   carry_origin(implementation_->model, implementation_->state);
   implementation_->forget_published();
   implementation_->static_norms.clear();

@@ -82,6 +82,9 @@ struct StepResult {
   int turning_node = -1;         ///< the node with that rotation, < Simulation::node_count()
   Reason reason = Reason::None;  ///< why the step failed
   Failure failure;               ///< where the step failed
+
+  /// Adds the iterations and recoveries of another attempt at the same step, or of an earlier part of it.
+  void add_effort(const StepResult& other);
 };
 /// Outcome of the search for an equilibrium.
 struct StaticResult : StepResult {
