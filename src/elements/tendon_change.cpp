@@ -20,34 +20,18 @@ class Correction {
   using V = Eigen::Matrix<S, 3, 1>;
   Correction(const GuidePlace& a, const GuidePlace& b, const GuideFrame<double>& begin_a, const GuideFrame<S>& end_a,
              const GuideFrame<double>& begin_b, const GuideFrame<S>& end_b)
-      : mean_a_(mixed(begin_a, end_a, 0.5)), mean_b_(mixed(begin_b, end_b, 0.5)), sum_(Eigen::Matrix<S, 12, 1>()) {
+      : mean_a_(mixed(begin_a, end_a, 0.5)), mean_b_(mixed(begin_b, end_b, 0.5)) {
     for (int i = 0; i < 12; ++i) sum_[i] = S(0);
     const Vector3 begin_way = begin_b.centre - begin_a.centre;
-    const V end_way = end_b.centre - end_a.centre, way = mean_b_.centre - mean_a_.centre;
-    const std::array<const Vector3*, 3> begin_axes[2] = {{&begin_a.first, &begin_a.second, &begin_a.normal},
-                                                         {&begin_b.first, &begin_b.second, &begin_b.normal}};
-    const std::array<const V*, 3> end_axes[2] = {{&end_a.first, &end_a.second, &end_a.normal},
-                                                 {&end_b.first, &end_b.second, &end_b.normal}};
-    const std::array<const V*, 3> axes[2] = {{&mean_a_.first, &mean_a_.second, &mean_a_.normal},
-                                             {&mean_b_.first, &mean_b_.second, &mean_b_.normal}};
-    for (int body = 0; body < 2; ++body) {
-      if (!(body == 0 ? a : b).is_circle()) continue;
-      for (int i = 0; i < 3; ++i) {
-        const S change = dot(end_way, *end_axes[body][i]) - begin_way.dot(*begin_axes[body][i]);
-        add_way(change, *axes[body][i]);
-        add_axis(change, body, *axes[body][i], way);
-      }
-    }
+    const V end_way = end_b.centre - end_a.centre;
     size_ = begin_way.squaredNorm();
+    if (a.is_circle()) add_way(0, in_axes(end_a, end_way), in_axes(begin_a, begin_way), mean_a_);
+    if (b.is_circle()) add_way(1, in_axes(end_b, end_way), in_axes(begin_b, begin_way), mean_b_);
     if (!a.is_circle() || !b.is_circle()) return;
     const double scale = a.radius * b.radius;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        const S change = scale * (dot(*end_axes[0][i], *end_axes[1][j]) - begin_axes[0][i]->dot(*begin_axes[1][j]));
-        squares_ += change * change;
-        add_axis(scale * change, 0, *axes[0][i], *axes[1][j]);
-        add_axis(scale * change, 1, *axes[1][j], *axes[0][i]);
-      }
+    add_axis(scale, in_axes(end_a, end_b.first), in_axes(begin_a, begin_b.first), mean_b_.first);
+    add_axis(scale, in_axes(end_a, end_b.second), in_axes(begin_a, begin_b.second), mean_b_.second);
+    add_axis(scale, in_axes(end_a, end_b.normal), in_axes(begin_a, begin_b.normal), mean_b_.normal);
   }
   bool is_tiny() const { return !(value_of(squares_) > kTiny * kTiny * size_); }
   Eigen::Matrix<S, 12, 1> of(const S& missing) const {
@@ -57,19 +41,38 @@ class Correction {
   }
 
  private:
-  void add_way(const S& change, const V& axis) {
-    squares_ += change * change;
-    const V force = change * axis, moment_a = cross(mean_a_.arm, force), moment_b = cross(mean_b_.arm, force);
+  template <class T>
+  static Eigen::Matrix<T, 3, 1> in_axes(const GuideFrame<T>& frame, const Eigen::Matrix<T, 3, 1>& v) {
+    return {dot(frame.first, v), dot(frame.second, v), dot(frame.normal, v)};
+  }
+  /// The sum of the axes of a frame, times the changes of scalar products with them.
+  V summed(const GuideFrame<S>& frame, const S& factor, const V& end, const Vector3& begin) {
+    V change, out;
+    for (int i = 0; i < 3; ++i) change[i] = factor * (end[i] - begin[i]);
+    squares_ += dot(change, change);
+    for (int i = 0; i < 3; ++i)
+      out[i] = change[0] * frame.first[i] + change[1] * frame.second[i] + change[2] * frame.normal[i];
+    return out;
+  }
+  /// Scalar products of the vector between the centres with the axes of a guide.
+  void add_way(int body, const V& end, const Vector3& begin, const GuideFrame<S>& frame) {
+    const V force = summed(frame, S(1), end, begin), way = mean_b_.centre - mean_a_.centre;
+    const V moment_a = cross(mean_a_.arm, force), moment_b = cross(mean_b_.arm, force), moment = cross(force, way);
     for (int i = 0; i < 3; ++i) {
       sum_[i] -= force[i];
       sum_[3 + i] -= moment_a[i];
       sum_[6 + i] += force[i];
       sum_[9 + i] += moment_b[i];
+      sum_[6 * body + 3 + i] += moment[i];
     }
   }
-  void add_axis(const S& factor, int body, const V& axis, const V& other) {
-    const V moment = cross(axis, other);
-    for (int i = 0; i < 3; ++i) sum_[6 * body + 3 + i] += factor * moment[i];
+  /// Scalar products of the axes of the first guide with an axis of the second one.
+  void add_axis(double scale, const V& end, const Vector3& begin, const V& axis) {
+    const V moment = cross(summed(mean_a_, S(scale), end, begin), axis);
+    for (int i = 0; i < 3; ++i) {
+      sum_[3 + i] += scale * moment[i];
+      sum_[9 + i] -= scale * moment[i];
+    }
   }
 
   GuideFrame<S> mean_a_, mean_b_;
