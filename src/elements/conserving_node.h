@@ -45,4 +45,27 @@ struct ConservingNode {
   }
 };
 
+/// Mass-proportional damping of the rotation of beams that is lumped at a node. The moment is D Omega / h with the
+/// material increment Omega, mapped to world axes by the mean rotation. Its work on the increment is Omega . D Omega /
+/// h
+/// >= 0, because Lambda_0 Omega = Lambda_1 Omega.
+template <typename S>
+struct NodeDamping {
+  Vector3T<S> moment;      ///< world axes [N m]
+  Matrix3T<S> derivative;  ///< d(moment)/d(spin); set only with the tangent
+  S dissipated;            ///< over the step [J]
+
+  /// `damping`: D, in the node's frame [kg m^2/s].
+  NodeDamping(const Matrix3T<S>& damping, const NodeMotion<S>& node, double step, bool with_tangent) {
+    const Vector3T<S> turned = node.begin.transpose() * node.increment, rate = S(1 / step) * (damping * turned);
+    const Matrix3T<S> mean = S(0.5) * (node.begin + node.end);
+    moment = mean * rate;
+    dissipated = turned.dot(rate);
+    if (!with_tangent) return;
+    const Matrix3T<S> to_turned = node.begin.transpose().lazyProduct(node.inverse_tangent);
+    derivative = S(1 / step) * mean.lazyProduct(Matrix3T<S>(damping.lazyProduct(to_turned)));
+    derivative -= so3::hat(Vector3T<S>(S(0.5) * (node.end * rate)));
+  }
+};
+
 }  // namespace flexarm

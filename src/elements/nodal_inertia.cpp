@@ -69,15 +69,11 @@ NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& ru
   const Matrix3& begin = node.begin.rotation;
   const Matrix3& end = node.end.rotation;
   if (rule.is_incremental()) {
-    // The moment is D Omega / h, mapped to world axes by the mean rotation. Its work on the increment is
-    // Omega . D Omega / h >= 0, because Lambda_0 Omega = Lambda_1 Omega.
-    const Vector3 Omega = begin.transpose() * node.increment, rate = D * Omega / node.step;
-    const Matrix3 mean = 0.5 * (begin + end);
-    action.residual.tail<3>() = mean * rate;
-    if (with_tangent)
-      action.rotational =
-          mean * D * begin.transpose() * node.inverse_tangent / node.step - 0.5 * so3::hat(Vector3(end * rate));
-    action.dissipated = Omega.dot(rate);
+    const NodeDamping<double> damping(D, {begin, end, {}, node.increment, node.inverse_tangent, {}, {}}, node.step,
+                                      with_tangent);
+    action.residual.tail<3>() = damping.moment;
+    if (with_tangent) action.rotational = damping.derivative;
+    action.dissipated = damping.dissipated;
     return action;
   }
   const NewmarkRule newmark = newmark_rule(rule, node.step);

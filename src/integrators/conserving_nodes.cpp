@@ -30,14 +30,17 @@ ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : vel
     const NodalInertia& inertia = model.inertias[i];
     Matrix3 rotary = inertia.rotary;
     if (rule.nodal_rotary_inertia) rotary += inertia.beam_rotary;
-    if (inertia.mass == 0 && rotary.isZero(0)) continue;
+    const bool is_damped = !inertia.rotary_damping.isZero(0);
+    if (inertia.mass == 0 && rotary.isZero(0) && !is_damped) continue;
     if (lane == 0) packs_.emplace_back();
     NodePack& pack = packs_.back();
     for (int l = lane; l < Pack::kLanes; ++l) {
       pack.nodes[l] = static_cast<int>(i);
       set_lane(pack.inertia.mass, l, inertia.mass);
       set_lane(pack.inertia.rotary, l, rotary);
+      set_lane(pack.damping, l, inertia.rotary_damping);
     }
+    pack.is_damped = pack.is_damped || is_damped;
     pack.lanes = lane + 1;
     lane = (lane + 1) % Pack::kLanes;
   }
@@ -61,8 +64,15 @@ void ConservingNodes::add(const StepMotion& step, Balance& balance) const {
       node.velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).velocity; });
       node.angular_velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).angular_velocity; });
       node.inverse_tangent = cayley::inverse_tangent(node.increment);
-      scatter(pack, ConservingNode<Pack>(pack.inertia, node, velocity_factor_, step.step, balance.tangent != nullptr),
-              balance);
+      const bool with_tangent = balance.tangent != nullptr;
+      ConservingNode<Pack> forces(pack.inertia, node, velocity_factor_, step.step, with_tangent);
+      if (pack.is_damped) {
+        const NodeDamping<Pack> damping(pack.damping, node, step.step, with_tangent);
+        forces.residual.tail<3>() += damping.moment;
+        if (with_tangent) forces.rotational += damping.derivative;
+        for (int lane = 0; lane < pack.lanes; ++lane) balance.dissipated += damping.dissipated[lane];
+      }
+      scatter(pack, forces, balance);
     }
   });
 }

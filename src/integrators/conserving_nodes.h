@@ -1,5 +1,5 @@
 #pragma once
-/// Inertia lumped at the nodes of a model over a step of the energy-momentum family, in packs of nodes.
+/// Inertia and damping lumped at the nodes of a model over a step of the energy-momentum family, in packs of nodes.
 
 #include <array>
 #include <vector>
@@ -17,7 +17,7 @@ class ConservingNodes {
   /// tangent-scaled increments.
   ConservingNodes(const Model& model, const TimeRule& rule);
 
-  /// Adds the rates of momentum to the balance.
+  /// Adds the rates of momentum, and the damping, to the balance.
   void add(const StepMotion& step, Balance& balance) const;
 
  private:
@@ -26,6 +26,8 @@ class ConservingNodes {
     int lanes = 0;  // in use
     std::array<int, Pack::kLanes> nodes;
     LumpedInertia<Pack> inertia;
+    bool is_damped = false;
+    Matrix3T<Pack> damping;  // see NodeDamping
   };
 
   double velocity_factor_;

@@ -14,6 +14,8 @@ NodalForces::NodalForces(const StepConfiguration& configuration, const StepHisto
   const std::vector<NodalInertia>& inertias = configuration.model().inertias;
   for (std::size_t i = 0; i < inertias.size(); ++i) {
     if (inertias[i].total_mass > 0) heavy_nodes_.push_back(static_cast<int>(i));
+    // In the energy-momentum family, damping is computed together with inertia (ConservingNodes, PlanarBeams).
+    if (configuration.scheme().stress == StressRule::Conjugate) continue;
     if (!inertias[i].rotary_damping.isZero(0)) damped_nodes_.push_back(static_cast<int>(i));
   }
 }

@@ -79,8 +79,9 @@ void PlanarBeams::set_nodes() {
     const NodalInertia& inertia = model.inertias[i];
     Matrix3 rotary = inertia.rotary;
     if (rule_.nodal_rotary_inertia) rotary += inertia.beam_rotary;
-    if (inertia.mass != 0 || !rotary.isZero(0))
-      inertias_.push_back({static_cast<int>(i), inertia.mass, normal.dot(rotary * normal)});
+    const double damping = normal.dot(inertia.rotary_damping * normal);
+    if (inertia.mass != 0 || !rotary.isZero(0) || damping != 0)
+      inertias_.push_back({static_cast<int>(i), inertia.mass, normal.dot(rotary * normal), damping});
   }
 }
 
@@ -266,7 +267,7 @@ void PlanarBeams::hand_over(Balance& balance) const {
   }
 }
 
-/// The same equations as in ConservingNode.
+/// The same equations as in ConservingNode and NodeDamping.
 void PlanarBeams::add_inertia(Balance& balance) {
   const double rate_of_step = 1 / configuration_.step(), factor = rule_.velocity_factor() * rate_of_step;
   for (const Inertia& inertia : inertias_) {
@@ -276,12 +277,14 @@ void PlanarBeams::add_inertia(Balance& balance) {
     const double mass = inertia.mass * factor, rotary = inertia.rotary * 2 * rate_of_step;
     force[0] += mass * (rate_of_step * (end.x - begin.x) - rate.vx);
     force[1] += mass * (rate_of_step * (end.y - begin.y) - rate.vy);
-    force[2] += rotary * (rate_of_step * rate.increment - rate.turning);
+    const double damping = inertia.damping * rate_of_step;
+    force[2] += rotary * (rate_of_step * rate.increment - rate.turning) + damping * rate.increment;
+    balance.dissipated += damping * rate.increment * rate.increment;
     if (!balance.tangent) continue;
     double* tangent = balance.tangent->diagonal_block(inertia.node);
     tangent[0] += mass * rate_of_step;
     tangent[5] += mass * rate_of_step;
-    tangent[10] += rotary * rate_of_step * (1 + 0.25 * rate.increment * rate.increment);
+    tangent[10] += (rotary * rate_of_step + damping) * (1 + 0.25 * rate.increment * rate.increment);
   }
   hand_over(balance);
 }

@@ -21,7 +21,7 @@ class PlanarBeams : public BeamFamily {
 
   void begin() override;
   void add_forces(Balance& balance) override;
-  /// Adds the inertia of nodes. Then hands all forces over to the balance.
+  /// Adds the inertia and the damping of nodes. Then hands all forces over to the balance.
   void add_inertia(Balance& balance) override;
   void carry_strains(const double* update) override;
   bool carries_strains() const override { return carries_strains_; }
@@ -40,7 +40,7 @@ class PlanarBeams : public BeamFamily {
   };
   struct Inertia {
     int node;
-    double mass, rotary;
+    double mass, rotary, damping;
   };
   /// Data of a node that is gathered in addition to its poses; four numbers, like a pose.
   struct alignas(32) NodeRate {
