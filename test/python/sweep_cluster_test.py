@@ -11,7 +11,9 @@ import pytest
 
 from sweeping import GRID, LONG, command, plan_of, sweep
 
-pytest.importorskip("distributed", reason="python3-distributed is not installed")
+distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
+# Before version 2 the option had the name of the dashboard's library.
+NO_DASHBOARD = "--no-dashboard" if int(distributed.__version__.split(".")[0]) >= 2 else "--no-bokeh"
 
 
 def free_port():
@@ -36,11 +38,11 @@ def scheduler(address, *options):
     host, port = address[len("tcp://"):].split(":")
     # The scheduler gives up a run after its worker has died once.
     setting = "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=0"
-    return ["env", setting, "dask-scheduler", "--host", host, "--port", port, "--no-dashboard", *options]
+    return ["env", setting, "dask-scheduler", "--host", host, "--port", port, NO_DASHBOARD, *options]
 
 
 def worker(address, folder):
-    return ["dask-worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(folder)]
+    return ["dask-worker", address, "--nthreads", "1", "--no-nanny", NO_DASHBOARD, "--local-directory", str(folder)]
 
 
 @pytest.fixture

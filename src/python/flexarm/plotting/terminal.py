@@ -18,7 +18,9 @@ def draw(plot, width, height):
     lines = [line.center(width) for line in textwrap.wrap(printable(plot.title), width)]
     for panel in plot.panels:
         legend = _legend(panel, plot) if len(panel.curves) > 1 else []
-        commands = _commands(panel, plot.log, width, max(LEAST_HEIGHT, height - len(legend) - 1))
+        # A title of gnuplot's would be beside the picture before version 5.4.
+        lines.append(printable(panel.y_label).center(width))
+        commands = _commands(panel, plot.log, width, max(LEAST_HEIGHT, height - len(legend) - 1) - 1)
         lines += _run("\n".join(commands)).strip("\n\f").split("\n") + legend
     return "".join(line.rstrip() + "\n" for line in lines)
 
@@ -32,9 +34,8 @@ def _legend(panel, plot):
 def _commands(panel, log, width, height):
     yield "set terminal dumb noenhanced size %d, %d" % (width, height)
     yield "set encoding utf8"
-    yield "set border 3; set tics nomirror; set tmargin 1; set bmargin 3; set rmargin 3"
+    yield "set border 3; set tics nomirror; set tmargin 0; set bmargin 3; set rmargin 3"
     yield "unset key"
-    yield "set title '%s'" % _quoted(panel.y_label)
     yield "set xlabel '%s'" % _quoted(panel.x_label)
     for axis in "xy":
         margin = 0 if axis == "x" else 1 / (height - 5)  # one line, so that no curve lies on the axis of x
