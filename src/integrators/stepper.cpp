@@ -127,7 +127,7 @@ StepResult Stepper::advance(State& state) {
 StepResult Stepper::advance_until_release(State& state) {
   ends_at_release_ = !settings_.events.is_on() && std::any_of(model_.joints.begin(), model_.joints.end(),
                                                               [](const auto& j) { return j.leaving >= 0; });
-  const StepResult result = advance(state);
+  StepResult result = advance(state);
   ends_at_release_ = false;
   return result;
 }

@@ -59,7 +59,7 @@ const scene::Diagnostics& Simulation::start_warnings() const {
 }
 
 StepResult Simulation::step() {
-  const StepResult result = implementation_->advance();
+  StepResult result = implementation_->advance();
   carry_origin(implementation_->model, implementation_->state);
   implementation_->forget_published();
   implementation_->static_norms.clear();
