@@ -74,6 +74,10 @@ void add_ends(HardGroup& group) {
         rail(40, slide(9, "on_end=\"free\""), initial("ride", 9, speed) + probe("rider", Vector3::Zero())), 1e-3, 0.2);
     hard.target = probe_at({9 + 0.2 * speed, 0, 0}, 0.2 * speed, 0.01);
   }
+  HardCase& past = group.add(
+      "leaves its line at 200 m/s, over 20 elements in a step",
+      rail(100, slide(9, "on_end=\"free\""), initial("ride", 9, 200) + probe("rider", Vector3::Zero())), 1e-2, 0.2);
+  past.target = probe_at({49, 0, 0}, 40, 0.01);
   group.add_unsound("passes an end that is an error", rail(40, slide(9, "on_end=\"error\""), initial("ride", 9, 10)),
                     1e-3, 0.2);
   group.add_unsound("driven beyond the end", rail(40, slide(9), motion("ride", "9 + 10*t*t")), 1e-3, 0.5);

@@ -39,7 +39,8 @@ def perform_all(job, runs, address, retries):
     is submitted again, up to `retries` times. Then the run has failed.
     """
     with connect(address) as client:
-        from distributed import KilledWorker, as_completed
+        from distributed import as_completed
+        from distributed.scheduler import KilledWorker
 
         submitted, deaths = {}, collections.Counter()
         runs = iter(runs)
