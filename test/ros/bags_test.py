@@ -163,6 +163,7 @@ class Bags(unittest.TestCase):
             arm = SimulatedArm()
             player = subprocess.Popen(["rosbag", "play", "--quiet", "--wait-for-subscribers", self.bag, "--topics",
                                        "/joint_force_command"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+            self.addCleanup(player.kill)
             self.assertEqual(player.wait(PATIENCE), 0)
             wait_until(lambda: arm.joint("left_shoulder").velocity != 0, "the motion")
 
@@ -180,9 +181,11 @@ class Bags(unittest.TestCase):
                 moved.append(message.velocity[message.name.index("left_shoulder")] != 0)
 
             self.addCleanup(rospy.Subscriber("/joint_states", JointState, receive, queue_size=1000).unregister)
-            player = subprocess.Popen(["rosbag", "play", "--quiet", "--clock", "--wait-for-subscribers", self.bag,
-                                       "--topics", "/joint_force_command"],
+            # Before version 1.15, rosbag waits for subscribers by the clock that it does not publish yet.
+            player = subprocess.Popen(["rosbag", "play", "--quiet", "--clock", "--delay", "1", self.bag, "--topics",
+                                       "/joint_force_command"],
                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+            self.addCleanup(player.kill)
             self.assertEqual(player.wait(PATIENCE), 0)
             wait_until(lambda: moved and moved[-1], "the motion")
             self.assertEqual(stamps, sorted(set(stamps)))
