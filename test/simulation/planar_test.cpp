@@ -45,7 +45,9 @@ SceneBuilder tilted_arm(const Quaternion& turn) {
   b.body("cart", 2, Vector3(0.1 * x), axes * Vector3(0.02, 0.03, 0.04).asDiagonal() * axes.transpose());
   b.beam("upper", {Vector3(0.6 * x), Vector3(0.6 * x + 0.4 * y)}, section, 4, 2);
   b.body("weight", 0.3, Vector3(0.05 * y), axes * Vector3(2e-3, 3e-3, 4e-3).asDiagonal() * axes.transpose());
-  b.beam("lower", {Vector3(0.7 * x)}, section, 2, 3).stiffness_proportional_damping = 1e-3;
+  scene::BeamDescription& lower = b.beam("lower", {Vector3(0.7 * x)}, section, 2, 3);
+  lower.stiffness_proportional_damping = 1e-3;
+  lower.mass_proportional_damping = 0.8;
   b.joint("rail", JointKind::Prismatic, "world", "cart", Vector3::Zero(), x).damping = 0.5;
   b.joint("shoulder", JointKind::Continuous, "cart", "upper", Vector3(0.2 * x), z).friction = 0.05;
   b.joint("weld", JointKind::Fixed, "upper", "weight", Vector3(0.6 * x + 0.4 * y));
