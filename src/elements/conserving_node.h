@@ -46,9 +46,8 @@ struct ConservingNode {
 };
 
 /// Mass-proportional damping of the rotation of beams that is lumped at a node. The moment is D Omega / h with the
-/// material increment Omega, mapped to world axes by the mean rotation. Its work on the increment is Omega . D Omega /
-/// h
-/// >= 0, because Lambda_0 Omega = Lambda_1 Omega.
+/// material increment Omega, mapped to world axes by the mean rotation. It dissipates Omega . D Omega / h, which is
+/// never negative, because Lambda_0 Omega = Lambda_1 Omega.
 template <typename S>
 struct NodeDamping {
   Vector3T<S> moment;      ///< world axes [N m]

@@ -66,6 +66,7 @@ struct Tendon::PartForces {
   void reset(Eigen::Index size) { length.setZero(size), rest.setZero(size); }
 };
 
+/// A step: what begin() finds, and memory for its evaluations.
 struct Tendon::Workspace : ForceWorkspace {
   std::vector<MovedSpan> spans;            // along the line
   std::vector<TendonPartStep> part_steps;  // without slip

@@ -75,6 +75,7 @@ void ForceElements::begin(TangentBackend& tangent) {
   std::transform(states.begin(), states.end(), velocities_.begin(), spatial_velocity);
   const ForceElementList& elements = configuration_.model().force_elements;
   const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
+  const ForceStep step = this->step();
   may_hit_ = false;
   if (may_be_far_) far_.begin(start);
   for (std::size_t k = 0; k < elements.size(); ++k) {
@@ -89,7 +90,7 @@ void ForceElements::begin(TangentBackend& tangent) {
       may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
     }
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
-    if (acts_[k]) elements[k]->begin(step_of(k, step()));
+    if (acts_[k]) elements[k]->begin(step_of(k, step));
   }
 }
 

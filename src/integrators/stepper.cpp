@@ -39,7 +39,9 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
       scheme_(scheme),
       settings_(settings),
       system_(model, scheme, BackendChoice::Fastest, Space::PlaneWhereFound),
-      newton_(system_, settings_) {
+      newton_(system_, settings_),
+      may_release_(
+          std::any_of(model.joints.begin(), model.joints.end(), [](const auto& j) { return j.leaving >= 0; })) {
   for (std::vector<double>& increment : before_.history.increments)
     increment.reserve(system_.degrees_of_freedom().unknowns);
   before_.wrenches.reserve(kRoomForWrenches);
@@ -125,8 +127,7 @@ StepResult Stepper::advance(State& state) {
 }
 
 StepResult Stepper::advance_until_release(State& state) {
-  ends_at_release_ = !settings_.events.is_on() && std::any_of(model_.joints.begin(), model_.joints.end(),
-                                                              [](const auto& j) { return j.leaving >= 0; });
+  ends_at_release_ = may_release_ && !settings_.events.is_on();
   StepResult result = advance(state);
   ends_at_release_ = false;
   return result;

@@ -76,11 +76,12 @@ class Stepper {
   StepSettings settings_;
   StepSystem system_;
   NewtonIteration newton_;
+  bool may_release_;                                   // whether there are sliders that may leave their lines
   std::unique_ptr<DissipativeSubstitute> substitute_;  // null unless OnFailure::Dissipate
   State before_;                                       // state at the beginning of a composed step, to undo it
   double begin_ = 0, event_ = 0;                       // start of the whole step; time from there to the event [s]
   double rest_ = 0;                                    // what is left of the step after a slider has left its line [s]
-  bool ends_at_release_ = false;
+  bool ends_at_release_ = false;                       // during advance_until_release()
   StepObserver* observer_ = nullptr;
   StepFollower* follower_ = nullptr;
 };

@@ -62,6 +62,9 @@ void StepResult::add_effort(const StepResult& other) {
   other_guesses += other.other_guesses;
   deepest_halving = std::max(deepest_halving, other.deepest_halving);
   is_dissipated = is_dissipated || other.is_dissipated;
+  if (other.largest_rotation <= largest_rotation) return;
+  largest_rotation = other.largest_rotation;
+  turning_node = other.turning_node;
 }
 
 void StepCounts::add(const StepResult& result) {

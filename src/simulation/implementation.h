@@ -166,7 +166,7 @@ struct Simulation::Implementation {
     return result;
   }
 
-  /// Whether a slider has left its line.
+  /// Frees the sliders that are beyond the end of a line that they may leave. Returns whether there was one.
   bool release_from_lines() {
     bool is_released = false;
     for (int slide; (slide = slide_beyond_end(model, state)) >= 0; is_released = true) {

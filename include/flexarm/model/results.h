@@ -83,7 +83,8 @@ struct StepResult {
   Reason reason = Reason::None;  ///< why the step failed
   Failure failure;               ///< where the step failed
 
-  /// Adds the iterations and recoveries of another attempt at the same step, or of an earlier part of it.
+  /// Adds the iterations and recoveries of another attempt at the same step, or of an earlier part of it. The largest
+  /// rotation is that of both.
   void add_effort(const StepResult& other);
 };
 /// Outcome of the search for an equilibrium.
