@@ -52,6 +52,7 @@ Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, co
   }
   parts_ = static_cast<int>(part_ends_.size());
   part_ends_.push_back(last);
+  find_part_nodes();
   find_pieces();
   shares_.assign(parts_, 1.0);
   std::vector<double> numbers(memory_size(), 0.0);
@@ -63,11 +64,33 @@ Tendon::Tendon(std::string name, TendonPlan plan, std::vector<int> functions, co
   if (plan_.rest_length == 0) plan_.rest_length = length_at_start_;
 }
 
+void Tendon::find_part_nodes() {
+  part_nodes_.resize(parts_);
+  guide_places_.assign(plan_.guides.size(), {-1, -1});
+  const auto place = [&](int part, int node) {
+    std::vector<int>& nodes = part_nodes_[part];
+    if (node < 0) return -1;
+    const auto known = std::find(nodes.begin(), nodes.end(), node);
+    const int at = static_cast<int>(known - nodes.begin());
+    if (known == nodes.end()) nodes.push_back(node);
+    return at;
+  };
+  for (int part = 0; part < parts_; ++part)
+    for (int i = part_ends_[part]; i <= part_ends_[part + 1]; ++i) {
+      const int at = place(part, guide_nodes_[i]);
+      if (i > part_ends_[part]) guide_places_[i].before = at;
+      if (i < part_ends_[part + 1]) guide_places_[i].behind = at;
+    }
+  for (const int node : winch_nodes_) winch_places_.push_back(place(0, node));
+}
+
 /// A piece may lead from each guide to the next one, and to those behind pulleys that the line may leave.
 void Tendon::find_pieces() {
   const int last = static_cast<int>(plan_.guides.size()) - 1;
-  if (parts_ > 1 || reach().size() <= kMostDenseNodes) return;
-  const auto may_leave = [&](int guide) { return plan_.guides[guide].place.is_circle() && guide < last; };
+  if (reach().size() <= kMostDenseNodes) return;
+  const auto may_leave = [&](int i) {
+    return plan_.guides[i].place.is_circle() && !plan_.guides[i].divides() && i < last;
+  };
   std::vector<std::array<int, 2>>& pairs = pieces_.pairs;
   for (int i = 0; i < last; ++i) {
     first_piece_.push_back(static_cast<int>(pairs.size()));
@@ -77,10 +100,19 @@ void Tendon::find_pieces() {
     }
   }
   if (pairs.size() > 4 * plan_.guides.size()) return pairs.clear();  // many pulleys in succession
-  const auto winds = [&](int end) { return plan_.guides[end].place.is_circle(); };
-  const bool changes =
-      winds(0) || winds(last) || std::any_of(winch_nodes_.begin(), winch_nodes_.end(), [](int i) { return i >= 0; });
-  pieces_.rank = plan_.has_tension ? 0 : changes ? 2 : 1;
+  pieces_.groups = part_nodes_;
+  pieces_.rank = group_rank();
+}
+
+/// The auxiliary variables of a part are the change of its length, that of its rest length, and what slips behind it;
+/// the last two, or the last one, only where that can occur.
+int Tendon::group_rank() const {
+  if (plan_.has_tension) return 0;
+  const std::vector<TendonGuide>& guides = plan_.guides;
+  if (std::any_of(guides.begin(), guides.end(), [](const TendonGuide& guide) { return guide.friction > 0; })) return 3;
+  const bool winds = std::any_of(guides.begin(), guides.end(),
+                                 [](const TendonGuide& guide) { return guide.divides() && guide.place.is_circle(); });
+  return winds || std::any_of(winch_nodes_.begin(), winch_nodes_.end(), [](int i) { return i >= 0; }) ? 2 : 1;
 }
 
 std::string Tendon::description() const {
@@ -103,8 +135,17 @@ Tendon::Neighbours Tendon::neighbours(const Memory& memory, int guide) const {
 
 Tendon::Span Tendon::span(int first, int second, int part) const {
   const TendonGuide &from = plan_.guides[first], &to = plan_.guides[second];
-  Span out{{from.place, to.place}, first,     second, part, guide_nodes_[first],
-           guide_nodes_[second],   {1, 0, 0}, {},     false};
+  Span out{{from.place, to.place},
+           first,
+           second,
+           part,
+           guide_nodes_[first],
+           guide_nodes_[second],
+           guide_places_[first].behind,
+           guide_places_[second].before,
+           {1, 0, 0},
+           {},
+           false};
   (from.divides() ? out.rest.begin : out.length.begin) = from.divides() ? -rim(from.place) : rim(from.place);
   (to.divides() ? out.rest.end : out.length.end) = to.divides() ? rim(to.place) : -rim(to.place);
   out.winds = (from.divides() && from.place.is_circle()) || (to.divides() && to.place.is_circle());
@@ -217,10 +258,10 @@ bool Tendon::find_touched(const Poses& poses, const NewMemory& memory) const {
 // ---------------------------------------------------------------- small motions and output
 
 void Tendon::find_gradients(const Poses& poses, const Memory& memory, int part, PartForces& out) const {
-  out.reset(6 * static_cast<Eigen::Index>(reach().size()));
+  out.reset(part_nodes_[part].size());
   const auto add = [](Eigen::VectorXd& sum, const Span& span, const Vector12& gradient) {
-    if (span.first_node >= 0) sum.segment<6>(6 * span.first_node) += gradient.head<6>();
-    if (span.second_node >= 0) sum.segment<6>(6 * span.second_node) += gradient.tail<6>();
+    if (span.first_place >= 0) sum.segment<6>(6 * span.first_place) += gradient.head<6>();
+    if (span.second_place >= 0) sum.segment<6>(6 * span.second_place) += gradient.tail<6>();
   };
   for_each_span(memory, part, [&](const Span& span) {
     if (span.first_node == span.second_node) return;
@@ -230,7 +271,7 @@ void Tendon::find_gradients(const Poses& poses, const Memory& memory, int part, 
     if (span.winds) add(out.rest, span, span.piece.gradient(at, here, span.rest));
   });
   for (std::size_t i = 0; i < plan_.winches.size(); ++i)
-    if (part == 0 && winch_nodes_[i] >= 0) out.rest.segment<3>(6 * winch_nodes_[i]) += plan_.winches[i].direction;
+    if (part == 0 && winch_places_[i] >= 0) out.rest.segment<3>(6 * winch_places_[i]) += plan_.winches[i].direction;
 }
 
 double Tendon::stretch_rate(const Poses& poses, const Memory& memory, int part,
@@ -253,14 +294,19 @@ double Tendon::stretch_rate(const Poses& poses, const Memory& memory, int part,
 ForceMeasures Tendon::measures(const State& state, const double* memory, const int*) const {
   const Memory view{memory, parts_};
   const Poses poses(state);
-  ForceMeasures out{Eigen::MatrixXd(parts_, 6 * reach().size()), Eigen::MatrixXd::Zero(parts_, parts_)};
+  ForceMeasures out{Eigen::MatrixXd::Zero(parts_, 6 * reach().size()), Eigen::MatrixXd::Zero(parts_, parts_)};
   for (int part = 0; part < parts_; ++part) {
     PartForces gradient;
     find_gradients(poses, view, part, gradient);
     const TendonLengths line = lengths(poses, view, part);
     const bool stretches = !plan_.has_tension && plan_.law.is_taut(line);
     // The energy is of first degree in both lengths, so its second derivative has rank one.
-    out.rows.row(part) = gradient.length - (stretches ? line.length / line.rest : 1.0) * gradient.rest;
+    const double by_rest = stretches ? line.length / line.rest : 1.0;
+    for (std::size_t i = 0; i < part_nodes_[part].size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      out.rows.row(part).segment<6>(6 * part_nodes_[part][i]) =
+          gradient.length.segment<6>(at) - by_rest * gradient.rest.segment<6>(at);
+    }
     if (stretches) out.stiffness(part, part) = plan_.law.stiffness / line.rest;
   }
   return out;

@@ -63,7 +63,8 @@ class Tendon : public ForceElement {
   const char* kind() const override { return "tendon"; }
   std::string description() const override;
 
-  /// The straight pieces, if the line has one part and touches many nodes. Then evaluate() can also give one matrix.
+  /// The straight pieces, and a group for each part, if the line touches many nodes. Then evaluate() can also give one
+  /// matrix.
   const ForcePieces& pieces() const override { return pieces_; }
   std::unique_ptr<ForceWorkspace> make_workspace() const override;
   void begin(const ForceStep& step) const override;
@@ -95,7 +96,9 @@ class Tendon : public ForceElement {
   struct Neighbours {
     int before, behind;
   };
+  void find_part_nodes();
   void find_pieces();
+  int group_rank() const;
   /// The guides that the line touches next to one.
   Neighbours neighbours(const Memory& memory, int guide) const;
   Span span(int first, int second, int part) const;
@@ -123,10 +126,9 @@ class Tendon : public ForceElement {
   bool find_steps(const ForceStep& step, const Memory& begin, const Memory& end, Workspace& workspace) const;
   void add_directions(const ForceStep& step, Workspace& workspace, ForceAction& action) const;
   void add_slope(const Span& span, double force, const Matrix12& slope, ForceAction& action) const;
-  void add_forces(TendonSlip& slip, const std::vector<PartForces>& directions, const std::vector<PartForces>& slopes,
-                  ForceAction& action) const;
-  void set_factors(const TendonStep& line, const PartForces& directions, const PartForces& slopes,
-                   PieceTangent& tangent) const;
+  void add_forces(Workspace& workspace, ForceAction& action) const;
+  void set_groups(const Workspace& workspace, PieceTangent& tangent) const;
+  void add_products(Workspace& workspace, Eigen::Map<Eigen::MatrixXd>& tangent) const;
   /// The rate of a part's length minus its rest length, but for the function of time and slipping [m/s]. `velocities`:
   /// of all nodes.
   double stretch_rate(const Poses& poses, const Memory& memory, int part, const std::vector<Vector6>& velocities) const;
@@ -135,7 +137,13 @@ class Tendon : public ForceElement {
 
   TendonPlan plan_;
   std::vector<int> guide_nodes_, winch_nodes_;  // indices into reach(); -1: world
-  std::vector<int> part_ends_{0};               // guides at the ends of parts: the first, those that divide, the last
+  std::vector<std::vector<int>> part_nodes_;    // per part: the nodes on which its lengths depend, indices into reach()
+  std::vector<int> winch_places_;               // indices into the nodes of the first part; -1: world
+  struct GuidePlaces {
+    int before, behind;
+  };
+  std::vector<GuidePlaces> guide_places_;  // indices into the nodes of the parts before and behind a guide; -1: world
+  std::vector<int> part_ends_{0};          // guides at the ends of parts: the first, those that divide, the last
   int parts_ = 1;
   std::vector<double> shares_;  // per part, of the function's rest length
   double length_at_start_ = 0;

@@ -15,14 +15,13 @@ FunctionStep Tendon::function_of(const ForceStep& step) const {
 
 std::unique_ptr<ForceWorkspace> Tendon::make_workspace() const {
   auto out = std::make_unique<Workspace>();
-  const Eigen::Index size = 6 * static_cast<Eigen::Index>(reach().size());
   out->spans.reserve(plan_.guides.size());
   out->part_steps.resize(parts_);
   out->begin_rates.resize(parts_);
   out->ratios.reserve(plan_.guides.size());
   for (std::vector<PartForces>* sums : {&out->directions, &out->slopes}) {
     sums->resize(parts_);
-    for (PartForces& sum : *sums) sum.reset(size);
+    for (int part = 0; part < parts_; ++part) (*sums)[part].reset(part_nodes_[part].size());
   }
   return out;
 }
@@ -40,6 +39,10 @@ void Tendon::begin(const ForceStep& step) const {
     workspace.part_steps[span.part].begin.length += here.state.value(span.length);
     workspace.part_steps[span.part].begin.rest += here.state.value(span.rest);
   });
+  workspace.slip.begin(parts_);
+  double slip = 0;  // as fast as in the last step
+  for (int part = 0; part + 1 < parts_; ++part)
+    workspace.slip.guess()[part] = slip -= memory.slip_rate(part) * step.duration;
   if (!has_rates(step)) return;
   for (int part = 0; part < parts_; ++part)
     workspace.begin_rates[part] = stretch_rate(poses, memory, part, step.velocities) - memory.slip_rate(part);
@@ -116,19 +119,19 @@ void Tendon::add_directions(const ForceStep& step, Workspace& workspace, ForceAc
   auto& slopes = workspace.slopes;
   const bool with_slope = action.wants_tangent();
   for (std::vector<PartForces>* sums : {&directions, &slopes})
-    for (PartForces& sum : *sums) sum.reset(action.residual.size());
+    for (int part = 0; part < parts_; ++part) (*sums)[part].reset(part_nodes_[part].size());
   for (const MovedSpan& moved : workspace.spans) {
     const Span& span = moved.span;
     if (span.first_node == span.second_node) continue;  // on one body: nothing changes
     const auto add = [&](const PieceWeights& weights, double force, Eigen::VectorXd& direction,
                          Eigen::VectorXd& slope) {
       const PieceChange change = span.piece.change(moved.begin, moved.end, weights, step.at_end, with_slope);
-      const int nodes[2] = {span.first_node, span.second_node};
+      const int places[2] = {span.first_place, span.second_place};
       for (int i = 0; i < 2; ++i) {
-        if (nodes[i] < 0) continue;
-        direction.segment<6>(6 * nodes[i]) += change.direction.segment<6>(6 * i);
+        if (places[i] < 0) continue;
+        direction.segment<6>(6 * places[i]) += change.direction.segment<6>(6 * i);
         if (!with_slope) continue;
-        slope.segment<6>(6 * nodes[i]) += change.end_gradient.segment<6>(6 * i);
+        slope.segment<6>(6 * places[i]) += change.end_gradient.segment<6>(6 * i);
       }
       if (with_slope) add_slope(span, force, change.direction_slope, action);
     };
@@ -138,15 +141,15 @@ void Tendon::add_directions(const ForceStep& step, Workspace& workspace, ForceAc
       add(span.rest, line.release, directions[span.part].rest, slopes[span.part].rest);
   }
   for (std::size_t i = 0; i < plan_.winches.size(); ++i)
-    if (winch_nodes_[i] >= 0)
+    if (winch_places_[i] >= 0)
       for (Eigen::VectorXd* sum : {&directions[0].rest, &slopes[0].rest})
-        sum->segment<3>(6 * winch_nodes_[i]) += plan_.winches[i].direction;
+        sum->segment<3>(6 * winch_places_[i]) += plan_.winches[i].direction;
 }
 
 void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) const {
   action.residual.setZero();
   action.tangent.setZero();
-  for (auto* matrix : {&action.pieces.blocks, &action.pieces.left, &action.pieces.right}) matrix->setZero();
+  action.pieces.set_zero();
   action.dissipated = action.work = 0;
   const Memory begin{step.memory, parts_};
   const NewMemory end{step.new_memory, parts_};
@@ -166,7 +169,7 @@ void Tendon::evaluate(const ForceStep& step, const int*, ForceAction& action) co
     return;
   }
   add_directions(step, workspace, action);
-  add_forces(slip, workspace.directions, workspace.slopes, action);
+  add_forces(workspace, action);
   for (int part = 0; part < parts_; ++part) {
     const TendonStep& line = slip.steps()[part];
     if (plan_.has_tension) {
@@ -202,42 +205,85 @@ void Tendon::add_slope(const Span& span, double force, const Matrix12& slope, Fo
         action.tangent.block<6, 6>(6 * nodes[i], 6 * nodes[j]) += force * slope.block<6, 6>(6 * i, 6 * j);
 }
 
-/// The change of both forces of a line of one part by its two lengths, as a product of rank two or less.
-void Tendon::set_factors(const TendonStep& line, const PartForces& directions, const PartForces& slopes,
-                         PieceTangent& tangent) const {
-  if (pieces_.rank == 0) return;
-  tangent.left.col(0) = line.by_length * directions.length + line.release_by_length * directions.rest;
-  tangent.right.row(0) = slopes.length.transpose();
-  if (pieces_.rank == 1) return;  // the rest length depends on no motion
-  tangent.left.col(1) = line.by_rest * directions.length + line.release_by_rest * directions.rest;
-  tangent.right.row(1) = slopes.rest.transpose();
+/// Adds tensions along the directions, and the derivatives of the tensions.
+void Tendon::add_forces(Workspace& workspace, ForceAction& action) const {
+  for (int part = 0; part < parts_; ++part) {
+    const TendonStep& line = workspace.slip.steps()[part];
+    const PartForces& directions = workspace.directions[part];
+    for (std::size_t i = 0; i < part_nodes_[part].size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      action.residual.segment<6>(6 * part_nodes_[part][i]) +=
+          line.tension * directions.length.segment<6>(at) + line.release * directions.rest.segment<6>(at);
+    }
+  }
+  if (pieces_.rank > 0 && action.pieces.blocks.size() != 0) set_groups(workspace, action.pieces);
+  if (action.tangent.size() != 0) add_products(workspace, action.tangent);
 }
 
-/// Adds tensions along the directions, and the derivatives of the tensions.
-void Tendon::add_forces(TendonSlip& slip, const std::vector<PartForces>& directions,
-                        const std::vector<PartForces>& slopes, ForceAction& action) const {
-  const bool with_slope = action.tangent.size() != 0;
-  if (action.pieces.blocks.size() != 0) set_factors(slip.steps()[0], directions[0], slopes[0], action.pieces);
-  if (with_slope) slip.find_slopes();
-  // The change of what a part gains by slipping, by the lengths of another part.
-  const auto gains = [](const Eigen::MatrixXd& by, int part, int other) {
-    return (part > 0 ? by(part - 1, other) : 0.0) - (part < by.rows() ? by(part, other) : 0.0);
-  };
+/// The changes of the forces by the lengths of their parts, and of the slips, by auxiliary variables
+/// (docs/notes/lines.md 5).
+void Tendon::set_groups(const Workspace& workspace, PieceTangent& tangent) const {
+  const Eigen::Index rank = pieces_.rank;
+  Eigen::Index at = 0;
   for (int part = 0; part < parts_; ++part) {
-    const TendonStep& line = slip.steps()[part];
-    action.residual += line.tension * directions[part].length + line.release * directions[part].rest;
-    for (int other = 0; with_slope && other < parts_; ++other) {
-      const bool is_own = part == other;
-      const double length = gains(slip.by_length(), part, other), rest = gains(slip.by_rest(), part, other);
-      if (!is_own && length == 0 && rest == 0) continue;
-      const double tension[2] = {(is_own ? line.by_length : 0) + line.by_rest * length,
-                                 (is_own ? line.by_rest : 0) + line.by_rest * rest};
-      const double release[2] = {(is_own ? line.release_by_length : 0) + line.release_by_rest * length,
-                                 (is_own ? line.release_by_rest : 0) + line.release_by_rest * rest};
-      const auto &by_length = slopes[other].length, &by_rest = slopes[other].rest;
-      action.tangent.noalias() += directions[part].length * (tension[0] * by_length + tension[1] * by_rest).transpose();
-      if (directions[part].rest.isZero(0)) continue;
-      action.tangent.noalias() += directions[part].rest * (release[0] * by_length + release[1] * by_rest).transpose();
+    const TendonStep& line = workspace.slip.steps()[part];
+    const PartForces &directions = workspace.directions[part], &slopes = workspace.slopes[part];
+    const Eigen::Index size = directions.length.size();
+    auto left = tangent.left.middleRows(at, size);
+    auto right = tangent.right.middleCols(at, size);
+    at += size;
+    left.col(0) = line.by_length * directions.length + line.release_by_length * directions.rest;
+    right.row(0) = slopes.length.transpose();
+    if (rank == 1) continue;  // the rest length depends on no motion
+    left.col(1) = line.by_rest * directions.length + line.release_by_rest * directions.rest;
+    right.row(1) = slopes.rest.transpose();
+    if (rank == 2) continue;  // nothing slips
+    auto before = tangent.inner.middleCols<3>(9 * part), own = tangent.inner.middleCols<3>(9 * part + 3),
+         behind = tangent.inner.middleCols<3>(9 * part + 6);
+    if (part > 0) before(1, 2) = -1;  // what the rest length gains
+    if (part + 1 == parts_) continue;
+    own(1, 2) = 1;
+    const SlipRow row = workspace.slip.row(part);
+    if (!row.slips) continue;
+    own.row(2) << row.by_length[0], row.by_rest[0], 0;
+    behind.row(2) << row.by_length[1], row.by_rest[1], 0;
+  }
+}
+
+/// The same changes, for a dense tangent.
+void Tendon::add_products(Workspace& workspace, Eigen::Map<Eigen::MatrixXd>& tangent) const {
+  auto& [slip_slopes, by_length, by_rest, pull, push] = workspace.dense;
+  const std::vector<PartForces>& slopes = workspace.slopes;
+  slip_slopes.setZero(parts_ - 1, tangent.cols());
+  const auto add = [&](auto&& sum, double factor, const Eigen::VectorXd& slope, int part) {
+    for (std::size_t i = 0; i < part_nodes_[part].size(); ++i)
+      sum.template segment<6>(6 * part_nodes_[part][i]) +=
+          factor * slope.segment<6>(static_cast<Eigen::Index>(6 * i)).transpose();
+  };
+  for (int guide = 0; guide + 1 < parts_; ++guide) {
+    const SlipRow row = workspace.slip.row(guide);
+    for (int k = 0; row.slips && k < 2; ++k) {
+      add(slip_slopes.row(guide), -row.by_length[k], slopes[guide + k].length, guide + k);
+      add(slip_slopes.row(guide), -row.by_rest[k], slopes[guide + k].rest, guide + k);
+    }
+  }
+  workspace.slip.find_slopes(slip_slopes);
+  for (int part = 0; part < parts_; ++part) {
+    const TendonStep& line = workspace.slip.steps()[part];
+    const PartForces& directions = workspace.directions[part];
+    by_length.setZero(tangent.cols()), by_rest.setZero(tangent.cols());
+    add(by_length, 1, slopes[part].length, part);
+    add(by_rest, 1, slopes[part].rest, part);
+    if (part > 0) by_rest += slip_slopes.row(part - 1);
+    if (part + 1 < parts_) by_rest -= slip_slopes.row(part);
+    pull = line.by_length * by_length + line.by_rest * by_rest;
+    push = line.release_by_length * by_length + line.release_by_rest * by_rest;
+    const bool winds = !directions.rest.isZero(0);
+    for (std::size_t i = 0; i < part_nodes_[part].size(); ++i) {
+      auto rows = tangent.middleRows<6>(6 * part_nodes_[part][i]);
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      rows.noalias() += directions.length.segment<6>(at) * pull;
+      if (winds) rows.noalias() += directions.rest.segment<6>(at) * push;
     }
   }
 }

@@ -48,9 +48,10 @@ struct Tendon::Span {
   TendonPiece piece;
   int first, second;  // guides
   int part;
-  int first_node, second_node;  // indices into reach(); -1: world
-  PieceWeights length, rest;    // its shares of the part's lengths
-  bool winds;                   // whether `rest` is not zero
+  int first_node, second_node;    // indices into reach(); -1: world
+  int first_place, second_place;  // indices into the nodes of the part; -1: world
+  PieceWeights length, rest;      // its shares of the part's lengths
+  bool winds;                     // whether `rest` is not zero
 };
 
 /// A span at both ends of a step.
@@ -59,11 +60,14 @@ struct Tendon::MovedSpan {
   PieceEnd begin, end;
 };
 
-/// Derivatives of the lengths of a part by {displacement, spin} of all nodes of reach().
+/// Derivatives of the lengths of a part by {displacement, spin} of its nodes.
 struct Tendon::PartForces {
   Eigen::VectorXd length, rest;
 
-  void reset(Eigen::Index size) { length.setZero(size), rest.setZero(size); }
+  void reset(std::size_t nodes) {
+    const auto size = static_cast<Eigen::Index>(6 * nodes);
+    length.setZero(size), rest.setZero(size);
+  }
 };
 
 /// A step: what begin() finds, and memory for its evaluations.
@@ -73,7 +77,12 @@ struct Tendon::Workspace : ForceWorkspace {
   std::vector<double> begin_rates;         // per part, without slip and function [m/s]
   TendonSlip slip;
   std::vector<double> ratios;
-  std::vector<PartForces> directions, slopes;
+  std::vector<PartForces> directions, slopes;  // per part
+  /// For a dense tangent: derivatives of the slips of all guides, of both lengths of a part, and of both its forces.
+  struct Dense {
+    Eigen::MatrixXd slips;
+    Eigen::RowVectorXd by_length, by_rest, pull, push;
+  } dense;
 };
 
 template <class Visit>

@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kMostRounds = 2, kSweeps = 4, kMostIterations = 12, kMostHalvings = 200;
+constexpr int kMostIterations = 30;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -65,80 +65,88 @@ double TendonSlip::excess(int guide, int way) const {
   return pulls - ratios_[guide] * holds;
 }
 
-/// Finds the slip of one guide while the others are what they are: the excess falls where the line slips towards it, so
-/// its root lies between no slip and a slip that is large enough.
-void TendonSlip::settle(int guide) {
-  if (ratios_[guide] == kNever) return;
-  const auto slip = [&](double way) {
-    slips_[guide] = way;
-    evaluate(guide), evaluate(guide + 1);
-  };
-  slip(0);
-  const int way = excess(guide, 1) > round_off_ ? 1 : excess(guide, -1) > round_off_ ? -1 : 0;
-  if (way == 0) return;
-  double least = 0, most = kEpsilon * (*parts_)[guide].end.rest;
-  for (slip(way * most); excess(guide, way) > 0 && std::isfinite(most); slip(way * most)) least = most, most *= 8;
-  double middle = 0.5 * (least + most);
-  for (int k = 0; k < kMostHalvings && least < middle && middle < most; ++k) {
-    slip(way * middle);
-    const double here = excess(guide, way);
-    if (std::abs(here) <= round_off_) return;
-    (here > 0 ? least : most) = middle;
-    const int pull = way > 0 ? guide + 1 : guide, hold = way > 0 ? guide : guide + 1;
-    const double slope = ends_[pull].by_rest + ratios_[guide] * ends_[hold].by_rest;
-    middle -= here / slope;  // Newton's method, if it stays between both
-    if (!(least < middle && middle < most)) middle = 0.5 * (least + most);
-  }
+/// The derivative of excess() by the guide's own slip. Zero or less for `way` 1, zero or more for -1.
+double TendonSlip::excess_slope(int guide, int way) const {
+  const double before = (way > 0 ? -ratios_[guide] : 1) * ends_[guide].by_rest;
+  return (way > 0 ? 1 : -ratios_[guide]) * ends_[guide + 1].by_rest - before;
 }
 
-/// Whether all guides stick or slip as they must. Chooses the ways of those that slip.
-bool TendonSlip::is_solved() {
+/// Chooses which guides slip next, and to which side: those on whose way the sum of the slip and of what would still
+/// remove the excess is positive (a primal-dual active set: Hintermueller, Ito and Kunisch 2003). Returns whether all
+/// guides stick or slip as they must.
+bool TendonSlip::choose_ways() {
   bool is_solved = true;
   for (int i = 0; i < slips_.size(); ++i) {
-    ways_[i] = slips_[i] > 0 ? 1 : slips_[i] < 0 ? -1 : 0;
+    const int last = ways_[i];
+    ways_[i] = 0;
     if (ratios_[i] == kNever) continue;
+    double largest = 0;
     for (const int way : {1, -1}) {
-      if (ways_[i] == 0 && excess(i, way) > round_off_) ways_[i] = way, is_solved = false;
-      if (ways_[i] == way && std::abs(excess(i, way)) > round_off_) is_solved = false;
+      const double excess = this->excess(i, way), slope = excess_slope(i, way);
+      if (slips_[i] == 0 && excess <= round_off_) continue;
+      const double sum = way * slips_[i] + (slope == 0 ? 0 : excess / std::abs(slope));
+      if (sum > largest) largest = sum, ways_[i] = way;
     }
+    const bool turns = ways_[i] * last < 0,
+               is_right = ways_[i] == 0 ? slips_[i] == 0
+                                        : ways_[i] * slips_[i] > 0 && std::abs(excess(i, ways_[i])) <= round_off_;
+    is_solved = is_solved && is_right && !turns;
+    if (turns) ways_[i] = 0;  // it sticks before it turns round
   }
   return is_solved;
 }
 
-/// Newton's method for the guides that slip now. Returns false if others would have to, or some of them not.
+/// Newton's method for the guides that slip; the others go back to where they stick. Returns false if it does not
+/// converge.
 bool TendonSlip::iterate() {
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    if (is_solved()) return true;
-    right_.setZero(slips_.size());
+    if (choose_ways()) return true;
+    update_ = -slips_;
     for (int i = 0; i < slips_.size(); ++i)
-      if (ways_[i] != 0) right_[i] = -excess(i, ways_[i]);
-    assemble();
-    factors_.compute(slopes_);
-    update_ = factors_.solve(right_);
+      if (ways_[i] != 0) update_[i] = row(i).slips ? -excess(i, ways_[i]) / excess_slope(i, ways_[i]) : 0;
+    substitute(update_);
     if (!update_.allFinite()) return false;
-    for (int i = 0; i < slips_.size(); ++i) {
-      if (ways_[i] != 0) slips_[i] += update_[i];  // round-off must not move those that stick
-      if (ways_[i] * slips_[i] < 0) return false;
-    }
+    for (int i = 0; i < slips_.size(); ++i) slips_[i] = ways_[i] == 0 ? 0 : slips_[i] + update_[i];
     evaluate();
   }
-  return false;
+  return choose_ways();
 }
 
-/// Derivatives of the excesses by the slips; for guides that stick, those of the slips themselves.
-void TendonSlip::assemble() {
-  const Eigen::Index count = slips_.size();
-  slopes_.setIdentity(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (ways_[i] == 0) continue;
-    slopes_(i, i) = 0;
-    for (const Eigen::Index part : {i, i + 1}) {
-      const bool pulls = (part == i + 1) == (ways_[i] > 0);
-      const double factor = (pulls ? 1 : -ratios_[i]) * ends_[part].by_rest;
-      if (part > 0) slopes_(i, part - 1) += factor;
-      if (part < count) slopes_(i, part) -= factor;
-    }
+SlipRow TendonSlip::row(int guide) const {
+  SlipRow out;
+  const double slope = ways_[guide] == 0 ? 0 : excess_slope(guide, ways_[guide]);
+  if (slope == 0) return out;
+  out.slips = true;
+  for (int k = 0; k < 2; ++k) {
+    const double factor = ((k == 1) == (ways_[guide] > 0) ? 1 : -ratios_[guide]) / slope;
+    out.by_length[k] = factor * ends_[guide + k].by_length;
+    out.by_rest[k] = factor * ends_[guide + k].by_rest;
   }
+  return out;
+}
+
+/// Solves the conditions of all guides for their slips: a tridiagonal system. A part's rest length gains what slips
+/// over the guide before it, and loses what slips over that behind it, so that each row's other entries add up to minus
+/// the diagonal. Pivots need no search then.
+template <class Rows>
+void TendonSlip::substitute(Rows& rows) {
+  const Eigen::Index count = rows.rows();
+  pivots_.setOnes(count);
+  for (Eigen::Index i = 1; i < count; ++i) {
+    const SlipRow last = row(static_cast<int>(i - 1)), here = row(static_cast<int>(i));
+    if (!here.slips) continue;
+    const double factor = here.by_rest[0] / pivots_[i - 1];
+    pivots_[i] += factor * last.by_rest[1];
+    rows.row(i) -= factor * rows.row(i - 1);
+  }
+  for (Eigen::Index i = count; i-- > 0;) {
+    if (i + 1 < count) rows.row(i) += row(static_cast<int>(i)).by_rest[1] * rows.row(i + 1);
+    rows.row(i) /= pivots_[i];
+  }
+}
+
+void TendonSlip::find_slopes(Eigen::MatrixXd& rows) {
+  substitute(rows);
 }
 
 bool TendonSlip::solve(const TendonLaw& law, const std::vector<TendonPartStep>& parts,
@@ -148,29 +156,32 @@ bool TendonSlip::solve(const TendonLaw& law, const std::vector<TendonPartStep>& 
   ratios_ = ratios;
   steps_.resize(parts.size()), ends_.resize(parts.size());
   ways_.assign(ratios.size(), 0);
-  slips_.setZero(static_cast<Eigen::Index>(ratios.size()));
+  if (slips_.size() != static_cast<Eigen::Index>(ratios.size())) begin(static_cast<int>(parts.size()));
   if (!find_slips()) return false;
   for (std::size_t p = 0; p < parts.size(); ++p) steps_[p] = parts[p].with(law, gain(static_cast<int>(p)));
   return true;
 }
 
+/// Whether the slips follow from those that are set. Between slack parts they are not unique, so that these must not
+/// decide.
+bool TendonSlip::follow() {
+  evaluate();
+  if (!iterate()) return false;
+  for (int i = 0; i < slips_.size(); ++i)
+    if (slips_[i] != 0 && !(ends_[i].tension > 0 || ends_[i + 1].tension > 0)) return false;
+  return true;
+}
+
 bool TendonSlip::find_slips() {
+  if (!slips_.isZero(0) && follow()) return true;
+  slips_.setZero();
   evaluate();
   for (const TendonStep& step : ends_)
     if (!std::isfinite(step.tension)) return false;
-  if (is_solved()) return true;
-  for (int round = 0; round < kMostRounds; ++round) {
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-      for (int i = 0; i < slips_.size(); ++i) settle(i);
-    evaluate();
-    settled_ = slips_;
-    if (iterate()) return true;
-    slips_ = settled_;
-    evaluate();
-  }
+  if (choose_ways() || follow()) return true;
   chain_.solve(*law_, *parts_, ratios_, slips_);
   evaluate();
-  return is_solved() || iterate();
+  return choose_ways() || iterate();
 }
 
 void TendonSlip::set_tension(int parts, double tension) {
@@ -180,28 +191,6 @@ void TendonSlip::set_tension(int parts, double tension) {
   ends_ = steps_;
   ways_.assign(parts - 1, 0);
   slips_.setZero(parts - 1);
-}
-
-void TendonSlip::find_slopes() {
-  const Eigen::Index count = slips_.size(), parts = static_cast<Eigen::Index>(steps_.size());
-  by_length_.setZero(count, parts);
-  by_rest_.setZero(count, parts);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (ways_[i] == 0) continue;
-    for (const Eigen::Index part : {i, i + 1}) {
-      const bool pulls = (part == i + 1) == (ways_[i] > 0);
-      const double factor = pulls ? -1 : ratios_[i];
-      by_length_(i, part) = factor * ends_[part].by_length;
-      by_rest_(i, part) = factor * ends_[part].by_rest;
-    }
-  }
-  if (std::count(ways_.begin(), ways_.end(), 0) == count) return;
-  assemble();
-  factors_.compute(slopes_);
-  solution_ = factors_.solve(by_length_);
-  by_length_.swap(solution_);
-  solution_ = factors_.solve(by_rest_);
-  by_rest_.swap(solution_);
 }
 
 }  // namespace flexarm

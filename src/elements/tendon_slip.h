@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "elements/slip_chain.h"
 #include "elements/tendon_law.h"
@@ -27,11 +26,25 @@ struct TendonPartStep {
   double rest_at(const TendonLaw& law, double tension) const;
 };
 
+/// The condition of a guide for small changes of the parts before and behind it, [0] and [1]: the sum of by_length
+/// times the change of the length, and of by_rest times that of the rest length with all slips, is zero. Its derivative
+/// by the guide's own slip is 1.
+struct SlipRow {
+  bool slips = false;  ///< false: the guide's slip is zero instead
+  double by_length[2] = {0, 0}, by_rest[2] = {0, 0};
+};
+
 /// Parts of a line, one after the other, with a guide between each two, over which the line may slip. Tensions at the
 /// end of the step decide: with means, those at the ends would swing about them, and more so from step to step.
 class TendonSlip {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// Begins a step: forgets the last slips.
+  void begin(int parts) { slips_.setZero(parts - 1); }
+  /// The slips that the next solve() tries first. They may be set after begin(); else they are those of the last
+  /// solve().
+  Eigen::VectorXd& guess() { return slips_; }
 
   /// `parts`: of the line. `ratios`: per guide, the largest ratio of the tensions on both sides, >= 1, or kNever. Finds
   /// the slips with which no ratio is exceeded, and with which the line slips towards the larger tension only where the
@@ -49,20 +62,23 @@ class TendonSlip {
   const Eigen::VectorXd& slips() const { return slips_; }
   /// What the rest length of a part gains by slipping [m].
   double gain(int part) const { return (part > 0 ? slips_[part - 1] : 0) - (part < slips_.size() ? slips_[part] : 0); }
-  /// Derivatives of the slips by the lengths and the rest lengths of the parts at the end, for solve()'s last result.
-  void find_slopes();
-  const Eigen::MatrixXd& by_length() const { return by_length_; }
-  const Eigen::MatrixXd& by_rest() const { return by_rest_; }
+  /// The condition of a guide, for solve()'s last result.
+  SlipRow row(int guide) const;
+  /// Finds changes of the slips. `rows`: per guide minus the changes of its condition without slips, as many as wanted;
+  /// replaced by the changes of the slip.
+  void find_slopes(Eigen::MatrixXd& rows);
 
  private:
   void evaluate();
   void evaluate(int part) { ends_[part] = (*parts_)[part].at_last(*law_, gain(part)); }
   double excess(int guide, int way) const;
-  void settle(int guide);
+  double excess_slope(int guide, int way) const;
   bool iterate();
+  bool follow();
   bool find_slips();
-  bool is_solved();
-  void assemble();
+  bool choose_ways();
+  template <class Rows>
+  void substitute(Rows& rows);
 
   const TendonLaw* law_ = nullptr;                      // during solve()
   const std::vector<TendonPartStep>* parts_ = nullptr;  // during solve()
@@ -71,9 +87,7 @@ class TendonSlip {
   SlipChain chain_;
   std::vector<int> ways_;  // per guide: 1 and -1: it slips; 0: it sticks
   std::vector<double> ratios_;
-  Eigen::VectorXd slips_, settled_, right_, update_;
-  Eigen::MatrixXd slopes_, by_length_, by_rest_, solution_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  Eigen::VectorXd slips_, update_, pivots_;
 };
 
 }  // namespace flexarm

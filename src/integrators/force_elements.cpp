@@ -41,7 +41,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
     const std::size_t size = 6 * element->most_nodes();
     most = std::max(most, static_cast<int>(size));
     const ForcePieces& pieces = element->pieces();
-    numbers = std::max(numbers, pieces.pairs.empty() ? size * size : PieceTangent::size(pieces, size / 6));
+    numbers = std::max(numbers, pieces.pairs.empty() ? size * size : PieceTangent::size(pieces));
     memory += element->memory_size();
     functions += static_cast<int>(element->functions().size());
     may_be_far_ = may_be_far_ || element->hits();
@@ -129,10 +129,9 @@ void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& bala
   const bool in_pieces = !pieces.pairs.empty();
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()),
                      rows = balance.tangent && !in_pieces ? size : 0;
-  ForceAction action{
-      {residual_.data(), size},
-      {tangent_.data(), rows, rows},
-      balance.tangent && in_pieces ? PieceTangent::in(tangent_.data(), pieces, nodes.size()) : PieceTangent()};
+  ForceAction action{{residual_.data(), size},
+                     {tangent_.data(), rows, rows},
+                     balance.tangent && in_pieces ? PieceTangent::in(tangent_.data(), pieces) : PieceTangent()};
   element.evaluate(step, nodes.data(), action);
   if (not_finite_ < 0 && !std::isfinite(action.residual.sum() + action.dissipated)) not_finite_ = static_cast<int>(k);
   for (std::size_t i = 0; i < nodes.size(); ++i)

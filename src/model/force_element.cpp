@@ -1,14 +1,57 @@
 #include "model/force_element.h"
 
+#include <numeric>
+
+#include <Eigen/LU>
+
 #include "model/state.h"
 
 namespace flexarm {
 
-PieceTangent PieceTangent::in(double* numbers, const ForcePieces& pieces, std::size_t nodes) {
-  const auto size = static_cast<Eigen::Index>(6 * nodes);
-  const Eigen::Index count = static_cast<Eigen::Index>(pieces.pairs.size()), rank = pieces.rank;
+std::size_t ForcePieces::group_nodes() const {
+  return std::accumulate(groups.begin(), groups.end(), std::size_t{0},
+                         [](std::size_t sum, const std::vector<int>& group) { return sum + group.size(); });
+}
+
+PieceTangent PieceTangent::in(double* numbers, const ForcePieces& pieces) {
+  const auto count = static_cast<Eigen::Index>(pieces.pairs.size()), rank = static_cast<Eigen::Index>(pieces.rank);
+  const Eigen::Index size = rank == 0 ? 0 : 6 * static_cast<Eigen::Index>(pieces.group_nodes());
+  const Eigen::Index inner = rank == 0 ? 0 : 3 * rank * static_cast<Eigen::Index>(pieces.groups.size());
   double *left = numbers + 144 * count, *right = left + size * rank;
-  return {{numbers, 12, 12 * count}, {left, size, rank}, {right, rank, size}};
+  return {{numbers, 12, 12 * count}, {left, size, rank}, {right, rank, size}, {right + size * rank, rank, inner}};
+}
+
+void PieceTangent::set_zero() {
+  for (auto* matrix : {&blocks, &left, &right, &inner}) matrix->setZero();
+  const Eigen::Index rank = inner.rows();
+  for (Eigen::Index own = rank; own < inner.cols(); own += 3 * rank) inner.middleCols(own, rank).setIdentity();
+}
+
+Eigen::MatrixXd PieceTangent::sum(const ForcePieces& pieces, std::size_t nodes) const {
+  const auto size = static_cast<Eigen::Index>(6 * nodes);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t p = 0; p < pieces.pairs.size(); ++p)
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (const auto [a, b] = pieces.pairs[p]; (i == 0 ? a : b) >= 0 && (j == 0 ? a : b) >= 0)
+          out.block<6, 6>(6 * (i == 0 ? a : b), 6 * (j == 0 ? a : b)) +=
+              blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * j);
+  if (pieces.rank == 0) return out;
+  const Eigen::Index rank = pieces.rank, groups = static_cast<Eigen::Index>(pieces.groups.size()), all = rank * groups;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(all, all), of_nodes = Eigen::MatrixXd::Zero(all, size),
+                  by_nodes = Eigen::MatrixXd::Zero(size, all);
+  Eigen::Index at = 0;
+  for (Eigen::Index g = 0; g < groups; ++g) {
+    for (const int node : pieces.groups[g]) {
+      of_nodes.block(rank * g, 6 * node, rank, 6) = right.middleCols<6>(at);
+      by_nodes.block(6 * node, rank * g, 6, rank) = left.middleRows<6>(at);
+      at += 6;
+    }
+    for (Eigen::Index other = std::max<Eigen::Index>(g - 1, 0); other < std::min(g + 2, groups); ++other)
+      whole.block(rank * g, rank * other, rank, rank) = inner.middleCols(rank * (3 * g + other - g + 1), rank);
+  }
+  out += by_nodes * whole.partialPivLu().solve(of_nodes);
+  return out;
 }
 
 void find_nodes(const ForceElement& element, const ForceStart& start, std::vector<int>& nodes) {

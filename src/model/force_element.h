@@ -63,25 +63,38 @@ struct ForceStep {
 };
 
 /// How the tangent of a force element that acts on many nodes is composed: of blocks of two nodes each, its pieces, and
-/// a product of low rank. Solvers then need not couple all nodes with each other. (docs/notes/tree.md 5)
+/// of groups of auxiliary variables. Solvers then need not couple all nodes with each other. (docs/notes/tree.md 5)
 struct ForcePieces {
   std::vector<std::array<int, 2>> pairs;  ///< per piece: indices into reach(), -1: none; empty: one dense matrix
-  int rank = 0;                           ///< of the product, at most 6
+  /// Per group: the nodes with which its auxiliary variables are coupled, indices into reach(), each once. They are
+  /// also coupled with each other, and with those of the group before and behind.
+  std::vector<std::vector<int>> groups;
+  int rank = 0;  ///< the number of auxiliary variables of each group, at most 6; 0: groups do not count
+
+  /// The sum of the numbers of nodes of all groups.
+  std::size_t group_nodes() const;
 };
 
-/// A tangent that consists of pieces. It is the sum of their blocks, and of left * right. Rows and columns as in
-/// ForceAction, n nodes.
+/// A tangent that consists of pieces. It is the sum of their blocks, and of left t(x), with the auxiliary variables t
+/// of all groups for motions x from inner t = right x. Nodes of all groups are listed one group after the other.
 struct PieceTangent {
   Eigen::Map<Eigen::MatrixXd> blocks{nullptr, 12, 0};  ///< 12 x 12 per piece, side by side; those of node -1 count not
-  Eigen::Map<Eigen::MatrixXd> left{nullptr, 0, 0};     ///< 6n x rank
-  Eigen::Map<Eigen::MatrixXd> right{nullptr, 0, 0};    ///< rank x 6n
+  Eigen::Map<Eigen::MatrixXd> left{nullptr, 0, 0};     ///< 6 x rank per node of each group, one below the other
+  Eigen::Map<Eigen::MatrixXd> right{nullptr, 0, 0};    ///< rank x 6 per node of each group, side by side
+  /// rank x 3 rank per group, side by side: its rows, for the variables of the group before, its own, that behind.
+  Eigen::Map<Eigen::MatrixXd> inner{nullptr, 0, 0};
 
-  /// The size of `numbers` of a tangent of an element with so many nodes.
-  static std::size_t size(const ForcePieces& pieces, std::size_t nodes) {
-    return 144 * pieces.pairs.size() + 12 * nodes * pieces.rank;
+  /// The size of `numbers`.
+  static std::size_t size(const ForcePieces& pieces) {
+    return 144 * pieces.pairs.size() +
+           (12 * pieces.group_nodes() + 3 * pieces.rank * pieces.groups.size()) * pieces.rank;
   }
   /// A tangent whose matrices are in `numbers`.
-  static PieceTangent in(double* numbers, const ForcePieces& pieces, std::size_t nodes);
+  static PieceTangent in(double* numbers, const ForcePieces& pieces);
+  /// Sets all matrices to zero, but the blocks of groups with themselves to identity.
+  void set_zero();
+  /// The dense matrix of the sum, 6n x 6n for n nodes of reach().
+  Eigen::MatrixXd sum(const ForcePieces& pieces, std::size_t nodes) const;
 };
 
 /// The contribution of a force element to the balance of a step. For each node that it acts on, in their order:

@@ -18,8 +18,10 @@ BorderedElimination::BorderedElimination(const Model& model, const DegreesOfFree
     if (dof.equation[scalar] >= 0) is_placed_[scalar] = true;
   for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) is_placed_[dof.first[mimic.slave_variable]] = true;
   for (std::size_t k = 0; k < model.force_elements.size(); ++k)
-    if (const int auxiliary = order.auxiliary(static_cast<int>(k)); auxiliary >= 0)
+    for (int g = 0; g < order.auxiliary_count(static_cast<int>(k)); ++g) {
+      const int auxiliary = order.auxiliary(static_cast<int>(k), g);
       std::fill_n(is_placed_.begin() + dof.first[auxiliary], dof.size[auxiliary], true);
+    }
   reserve();
 }
 
@@ -38,7 +40,8 @@ void BorderedElimination::reserve() {
     for (const int e : part.elements) own += 6 * order_.parts()[e].node_count;
     own += 6 * static_cast<int>(part.closures.size()) + static_cast<int>(part.mimics.size());
     own += 6 * static_cast<int>(part.pieces.size());
-    for (const auto& [coupling, node] : part.factors) own += dof_.size[order_.auxiliary(coupling)];
+    for (const auto& factor : part.factors) own += dof_.size[order_.auxiliary(factor.coupling, factor.group)];
+    for (const auto& [coupling, row, column] : part.inners) own += 2 * dof_.size[order_.auxiliary(coupling, row)];
     const int size = own + riders, lanes = lanes_for(size);
     most = std::max(most, size);
     scalars += 4 * static_cast<std::size_t>(size);
@@ -153,19 +156,17 @@ void BorderedElimination::assemble(int index) {
     }
     for (const int closure : part.closures) add_closure(closure);
     for (int k = part.first_coupling; k >= 0; k = order_.next_coupling(k)) add_coupling(k);
-    for (const TreePart::OfCoupling& piece : part.pieces) add_piece(piece);
-    for (const TreePart::OfCoupling& node : part.factors) add_factors(node);
+    for (const TreePart::Piece& piece : part.pieces) add_piece(piece);
+    for (const TreePart::Factor& factor : part.factors) add_factor(factor);
+    for (const TreePart::Inner& inner : part.inners) add_inner(inner);
     for (const int variable : part.complete) add_diagonal(variable);
   });
 }
 
 void BorderedElimination::add_diagonal(int variable) {
   const int first = dof_.first[variable], size = dof_.size[variable];
-  if (variable >= dof_.variable_of_closure(static_cast<int>(model_.closures.size()))) {  // an auxiliary one
-    for (int k = first; k < first + size; ++k) front_.row(front_.row_place(k))[front_.column_place(k)] += 1;
-    return;
-  }
-  if (variable >= dof_.node_count + dof_.joint_count) return;  // multipliers have no diagonal block
+  // Multipliers have no diagonal block. Those of auxiliary variables are in add_inner().
+  if (variable >= dof_.node_count + dof_.joint_count) return;
   for (int r = 0; r < size; ++r)
     for (int c = 0; c < size; ++c)
       if (is_placed_[first + r] && is_placed_[first + c])
@@ -196,24 +197,32 @@ void BorderedElimination::add_coupling(int k) {
 }
 
 /// Adds the blocks of a piece's two nodes with each other.
-void BorderedElimination::add_piece(const TreePart::OfCoupling& piece) {
+void BorderedElimination::add_piece(const TreePart::Piece& piece) {
   const auto [a, b] = model_.force_elements[piece.coupling]->pieces().pairs[piece.index];
   const std::vector<int>& nodes = order_.coupled_nodes(piece.coupling);
-  const Eigen::MatrixXd& values = blocks_.pieces[piece.coupling].blocks;
+  const Eigen::Map<Eigen::MatrixXd>& values = blocks_.pieces[piece.coupling].tangent.blocks;
   const Eigen::Index at = 12 * static_cast<Eigen::Index>(piece.index);
   front_.add(6 * nodes[a], 6 * nodes[b], &values(0, at + 6), 6, 6, 12);
   front_.add(6 * nodes[b], 6 * nodes[a], &values(6, at), 6, 6, 12);
 }
 
-/// Adds what couples a node with the auxiliary variable t = -right x. Its equation is right x + t = 0, and -left t
-/// stands in the rows of the nodes.
-void BorderedElimination::add_factors(const TreePart::OfCoupling& node) {
-  const int variable = order_.auxiliary(node.coupling), first = dof_.first[variable], rank = dof_.size[variable];
-  const int scalar = 6 * order_.coupled_nodes(node.coupling)[node.index];
-  const TreeBlocks::Pieces& values = blocks_.pieces[node.coupling];
-  const Eigen::Index at = 6 * static_cast<Eigen::Index>(node.index);
+/// Adds what couples a node with the auxiliary variables t of a group. Their equation is right x + inner t = 0, and
+/// -left t stands in the rows of the nodes.
+void BorderedElimination::add_factor(const TreePart::Factor& factor) {
+  const int variable = order_.auxiliary(factor.coupling, factor.group), scalar = 6 * factor.node;
+  const int first = dof_.first[variable], rank = dof_.size[variable];
+  const PieceTangent& values = blocks_.pieces[factor.coupling].tangent;
+  const Eigen::Index at = 6 * static_cast<Eigen::Index>(factor.place);
   front_.add(scalar, first, &values.left(at, 0), 6, rank, static_cast<int>(values.left.rows()));
   front_.add(first, scalar, &values.right(0, at), rank, 6, rank);
+}
+
+void BorderedElimination::add_inner(const TreePart::Inner& inner) {
+  const int row = order_.auxiliary(inner.coupling, inner.row), column = order_.auxiliary(inner.coupling, inner.column);
+  const int rank = dof_.size[row];
+  const Eigen::Index at = rank * static_cast<Eigen::Index>(3 * inner.row + inner.column - inner.row + 1);
+  front_.add(dof_.first[row], dof_.first[column], &blocks_.pieces[inner.coupling].tangent.inner(0, at), rank, rank,
+             rank);
 }
 
 void BorderedElimination::add_remainder(const Factors& f) {

@@ -57,8 +57,9 @@ class BorderedElimination {
   void add_diagonal(int variable);
   void add_closure(int closure);
   void add_coupling(int coupling);
-  void add_piece(const TreePart::OfCoupling& piece);
-  void add_factors(const TreePart::OfCoupling& node);
+  void add_piece(const TreePart::Piece& piece);
+  void add_factor(const TreePart::Factor& factor);
+  void add_inner(const TreePart::Inner& inner);
   void add_remainder(const Factors& factors);
   void fold_slave(const TreePart& part, Factors& factors);
   void set_targets(const JointMap& joint, int j, Factors& factors);

@@ -82,16 +82,13 @@ void SparseTangent::add_coupling(int index, const PieceTangent& tangent) {
     return Eigen::Map<Matrix6>(values_.data() + blocks_[places[i * count + j]].offset);
   };
   const ForcePieces& pieces = model_.force_elements[index]->pieces();
+  if (pieces.rank > 0) return add_coupling(index, tangent.sum(pieces, nodes.size()));
   for (std::size_t p = 0; p < pieces.pairs.size(); ++p)
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
         if (pieces.pairs[p][i] >= 0 && pieces.pairs[p][j] >= 0)
           block(pieces.pairs[p][i], pieces.pairs[p][j]) +=
               tangent.blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * j);
-  if (pieces.rank == 0) return;
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j)
-      block(i, j) += tangent.left.middleRows<6>(6 * i).lazyProduct(tangent.right.middleCols<6>(6 * j));
 }
 
 void SparseTangent::fold(int j) {

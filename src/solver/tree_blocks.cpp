@@ -25,12 +25,10 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
     closures.push_back(Eigen::MatrixXd::Zero(size, size));
   }
   for (const auto& element : model.force_elements) {
-    const auto& [pairs, rank] = element->pieces();
-    const Eigen::Index size = 6 * element->most_nodes(), dense = pairs.empty() ? size : 0;
+    const ForcePieces& composed = element->pieces();
+    const Eigen::Index dense = composed.pairs.empty() ? 6 * element->most_nodes() : 0;
     couplings.push_back(Eigen::MatrixXd::Zero(dense, dense));
-    const Eigen::Index numbers = pairs.empty() ? 0 : size, columns = 12 * static_cast<Eigen::Index>(pairs.size());
-    pieces.push_back({Eigen::MatrixXd::Zero(12, columns), Eigen::MatrixXd::Zero(numbers, rank),
-                      Eigen::MatrixXd::Zero(rank, numbers)});
+    pieces.emplace_back(composed);
   }
 }
 

@@ -25,8 +25,14 @@ struct TreeBlocks {
   std::vector<Eigen::MatrixXd> couplings;  ///< per force element: the matrix of the nodes that it couples
   /// The same for those in pieces, as in PieceTangent, but -left.
   struct Pieces {
-    Eigen::MatrixXd blocks, left, right;
-    void set_zero() { blocks.setZero(), left.setZero(), right.setZero(); }
+    explicit Pieces(const ForcePieces& pieces)
+        : numbers(PieceTangent::size(pieces)), tangent(PieceTangent::in(numbers.data(), pieces)) {
+      tangent.set_zero();
+    }
+    Pieces(Pieces&&) = default;  // no copies: the tangent is in the numbers
+
+    std::vector<double> numbers;
+    PieceTangent tangent;
   };
   std::vector<Pieces> pieces;
   std::vector<MimicMap> mimics;

@@ -13,7 +13,9 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
     Coupling& coupling = couplings_.emplace_back();
     find_nodes(*element, {model_.nodes, at_rest}, coupling.nodes);
     coupling.in_pieces = !pieces.pairs.empty();
-    if (pieces.rank > 0) coupling.auxiliary = dof_.add_variable(pieces.rank);
+    coupling.auxiliary_count = pieces.rank > 0 ? static_cast<int>(pieces.groups.size()) : 0;
+    coupling.first_auxiliary = static_cast<int>(dof_.size.size());
+    for (int g = 0; g < coupling.auxiliary_count; ++g) dof_.add_variable(pieces.rank);
   }
   completion_.assign(dof_.size.size(), -1);
   visited_.assign(dof_.size.size(), -1);
@@ -216,7 +218,11 @@ void TreeOrder::for_each_of_its_own(const TreePart& part, const Visit& visit) co
   for (const auto& [coupling, piece] : part.pieces)
     for (const int node : model_.force_elements[coupling]->pieces().pairs[piece])
       visit(couplings_[coupling].nodes[node]);
-  for (const TreePart::OfCoupling& node : part.factors) visit(couplings_[node.coupling].auxiliary);
+  for (const TreePart::Factor& factor : part.factors) visit(auxiliary(factor.coupling, factor.group));
+  for (const auto& [coupling, row, column] : part.inners) {
+    visit(auxiliary(coupling, row));
+    visit(auxiliary(coupling, column));
+  }
   std::for_each(part.complete.begin(), part.complete.end(), visit);
   if (part.joint >= 0) {
     const JointMap& joint = model_.joints[part.joint];

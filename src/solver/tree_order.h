@@ -18,11 +18,21 @@ struct TreePart {
 
   // ---- what is added or becomes complete here: indices of parts, closures, DegreesOfFreedom::mimics, variables
   std::vector<int> elements, closures, mimics, complete;
-  /// A piece of a coupling, or one of its nodes, which is complete here; see ForcePieces.
-  struct OfCoupling {
+  /// A piece of a coupling; see ForcePieces.
+  struct Piece {
     int coupling, index;
   };
-  std::vector<OfCoupling> pieces, factors;
+  std::vector<Piece> pieces;
+  /// A node that is complete here, and a group with which it is coupled. `place`: of the node in PieceTangent::left.
+  struct Factor {
+    int coupling, group, node, place;
+  };
+  std::vector<Factor> factors;
+  /// Rows and columns of two groups of which the first is complete here.
+  struct Inner {
+    int coupling, row, column;
+  };
+  std::vector<Inner> inners;
 
   // ---- these depend on the windows of sliders and on the nodes of couplings
   int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): variables that later parts eliminate
@@ -31,7 +41,7 @@ struct TreePart {
   int first_coupling = -1;                  ///< list of couplings added here, see TreeOrder::next_coupling(); -1: none
   int first_member = -1, next_member = -1;  ///< first part in its own front; next part in a shared front; -1: none
   /// Whether tangents of force elements are added here.
-  bool couples_forces() const { return first_coupling >= 0 || !pieces.empty() || !factors.empty(); }
+  bool couples_forces() const { return first_coupling >= 0 || !pieces.empty() || !factors.empty() || !inners.empty(); }
   bool has_border = false;      ///< it couples more than the nodes and coordinates of this part
   bool passes_node = true;      ///< the remainder is a 6 x 6 block of the inboard node, or nothing
   bool keeps_interior = false;  ///< element without border; no part leaves a remainder between its ends
@@ -44,15 +54,16 @@ struct TreePart {
 /// until their own part comes: for a slider the active nodes of its line, for a closure its other node and its
 /// multipliers, for a mimic coordinate the one that it follows, for a beam whose far end is held by another joint the
 /// master of that joint, for a force element its other nodes. A force element in pieces couples the two nodes of each
-/// piece. For the product of low rank it has an auxiliary variable, which rides from its first node to its last one.
+/// piece. Each of its groups has an auxiliary variable, which rides from the group's first node to its last one.
 class TreeOrder {
  public:
   TreeOrder(const Model& model, const DegreesOfFreedom& dof);
 
   /// The degrees of freedom, and behind them the auxiliary variables of force elements.
   const DegreesOfFreedom& dof() const { return dof_; }
-  /// The auxiliary variable of a force element; -1: none.
-  int auxiliary(int coupling) const { return couplings_[coupling].auxiliary; }
+  /// The auxiliary variable of a group of a force element; see ForcePieces.
+  int auxiliary(int coupling, int group) const { return couplings_[coupling].first_auxiliary + group; }
+  int auxiliary_count(int coupling) const { return couplings_[coupling].auxiliary_count; }
   /// False if a node is no slave of a joint and not exactly one chain of elements leads to it from a slave.
   bool is_complete() const { return complete_; }
   const std::vector<TreePart>& parts() const { return parts_; }
@@ -81,6 +92,7 @@ class TreeOrder {
   void place_closures();
   void place_couplings();
   void place_pieces();
+  void place_groups(int coupling);
   std::vector<std::vector<int>> parts_of_variables() const;
   std::vector<int> elimination_tree(std::vector<std::vector<int>> parts) const;
   void count_riders();
@@ -109,7 +121,7 @@ class TreeOrder {
     std::vector<int> nodes;
     int next = -1;
     bool in_pieces = false;
-    int auxiliary = -1;
+    int first_auxiliary = -1, auxiliary_count = 0;
   };
   std::vector<Coupling> couplings_;  // per force element
   std::vector<int> border_, visited_, most_riders_;

@@ -173,8 +173,7 @@ void TreeOrder::place_couplings() {
   }
 }
 
-/// Places each piece in the part in which the first of its two nodes is complete, and the factors of the product of low
-/// rank, node by node, where the node is complete. The auxiliary variable is complete with the last of the nodes.
+/// Places each piece in the part in which the first of its two nodes is complete.
 void TreeOrder::place_pieces() {
   for (int k = 0; k < static_cast<int>(couplings_.size()); ++k) {
     const std::vector<int>& nodes = couplings_[k].nodes;
@@ -184,13 +183,31 @@ void TreeOrder::place_pieces() {
       if (a < 0 || b < 0 || a == b) continue;  // it couples no nodes
       parts_[std::min(completion_[nodes[a]], completion_[nodes[b]])].pieces.push_back({k, p});
     }
-    if (couplings_[k].auxiliary < 0) continue;
-    int& last = completion_[couplings_[k].auxiliary];
-    for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
-      parts_[completion_[nodes[i]]].factors.push_back({k, i});
-      last = std::max(last, completion_[nodes[i]]);
-    }
+    if (couplings_[k].auxiliary_count > 0) place_groups(k);
   }
+}
+
+/// Places the factors of the groups, node by node, where the node is complete. The auxiliary variable is complete with
+/// the last of the group's nodes, or, if it has none, with a neighbour. Couplings of two groups are placed in the part
+/// in which the first of both is complete.
+void TreeOrder::place_groups(int k) {
+  const std::vector<std::vector<int>>& groups = model_.force_elements[k]->pieces().groups;
+  const int count = static_cast<int>(groups.size());
+  int* const last = &completion_[auxiliary(k, 0)];
+  int place = 0;
+  for (int g = 0; g < count; ++g)
+    for (const int i : groups[g]) {
+      const int node = couplings_[k].nodes[i];
+      parts_[completion_[node]].factors.push_back({k, g, node, place++});
+      last[g] = std::max(last[g], completion_[node]);
+    }
+  for (int g = 1; g < count; ++g)
+    if (last[g] < 0) last[g] = last[g - 1];
+  for (int g = count - 1; g-- > 0;)
+    if (last[g] < 0) last[g] = last[g + 1];
+  for (int g = 0; g < count; ++g)
+    for (int other = std::max(g - 1, 0); other < std::min(g + 2, count); ++other)
+      parts_[std::min(last[g], last[other])].inners.push_back({k, g, other});
 }
 
 }  // namespace flexarm

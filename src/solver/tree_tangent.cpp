@@ -36,7 +36,7 @@ void TreeTangent::set_zero() {
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
   // Most couplings couple fewer nodes than they may.
   for (std::size_t k = 0; k < blocks_.couplings.size(); ++k) {
-    blocks_.pieces[k].set_zero();
+    blocks_.pieces[k].tangent.set_zero();
     if (blocks_.couplings[k].size() == 0) continue;
     const Eigen::Index size = 6 * static_cast<Eigen::Index>(order_.coupled_nodes(static_cast<int>(k)).size());
     blocks_.couplings[k].topLeftCorner(size, size).setZero();
@@ -74,10 +74,11 @@ void TreeTangent::add_coupling(int index, const PieceTangent& tangent) {
     for (int i = 0; i < 2; ++i)
       if (pairs[p][i] >= 0)
         add_to_node(nodes[pairs[p][i]], tangent.blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * i));
-  TreeBlocks::Pieces& pieces = blocks_.pieces[index];
+  PieceTangent& pieces = blocks_.pieces[index].tangent;
   pieces.blocks = tangent.blocks;
   pieces.left = -tangent.left;
   pieces.right = tangent.right;
+  pieces.inner = tangent.inner;
 }
 
 /// The elimination folds; here only the windows of sliders are set.

@@ -1,4 +1,4 @@
-// Tests simulations of lines over many links: a closed form in statics, and conservation of energy.
+// Tests simulations of lines over many links: closed forms in statics, conservation of energy, and friction.
 #include <cmath>
 #include <string>
 
@@ -79,6 +79,62 @@ TEST(LongLines, ConserveEnergy) {
     most = std::max(most, value_of(s, "tendon/line/tension"));
   }
   EXPECT_GT(most, 1.5 * kWeight);
+}
+
+/// A rope over nine posts at the corners of a regular polygon, where it turns by 30 degrees each. Both ends lead on
+/// straight to trolleys on rails: one is held by an effort, the other one moves steadily.
+Simulation posts(double friction) {
+  constexpr int kPosts = 9;
+  constexpr double kTurn = M_PI / 6;
+  std::string parts, guides;
+  double x = 0, z = 0, direction = 0;
+  for (int i = 0; i < kPosts; ++i) {
+    parts += fmt::format(R"(<joint name="rail{0}" type="prismatic"> <parent link="world"/> <child link="post{0}"/>
+        <origin xyz="{1:.17g} 0 {2:.17g}"/> <axis xyz="0 1 0"/> <limit lower="-1" upper="1" effort="1e3" velocity="1"/> </joint>
+      <spring joint="rail{0}" stiffness="100"/>
+      <link name="post{0}"> <inertial> <mass value="1"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial> </link>)",
+                         i, x, z);
+    guides += fmt::format("<via link=\"post{}\" friction=\"{}\"/>", i, friction);
+    direction += kTurn;
+    x += std::cos(direction), z += std::sin(direction);
+  }
+  const std::string text = fmt::format(
+      R"(<robot name="posts"> <link name="world"/> {}
+      <joint name="pull" type="prismatic"> <parent link="world"/> <child link="trolley"/>
+        <origin xyz="{:.17g} 0 {:.17g}"/> <axis xyz="{:.17g} 0 {:.17g}"/> <limit lower="-1" upper="1" effort="1e3" velocity="1"/> </joint>
+      <link name="trolley"> <inertial> <mass value="1"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+      <joint name="hold" type="prismatic"> <parent link="world"/> <child link="weight"/> <origin xyz="-1 0 0"/>
+        <axis xyz="-1 0 0"/> <limit lower="-1" upper="1" effort="1e3" velocity="1"/> </joint>
+      <link name="weight"> <inertial> <mass value="1"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+      <tendon name="rope" ea="1e4" damping="200"> <via link="weight"/> {} <via link="trolley"/> </tendon>
+      <simulation> <integrator scheme="em" step="1e-2" tolerance="1e-12"/> <effort joint="hold" history="20"/>
+        <motion joint="pull" position="0.025*exp(-4*t)+0.1*t-0.025"/> </simulation> </robot>)",
+      parts, x, z, std::cos(direction), std::sin(direction), guides);
+  const scene::ReadResult read = scene::read_scene_text(text, "posts.urdf");
+  for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
+  return Simulation(read.scene.value());
+}
+
+// Euler and Eytelwein: the tensions at both ends have the ratio exp(friction * angle), over nine posts that are nine
+// links. What the pull does more than the effort takes is dissipated. The weight moves almost as steadily as the
+// trolley, so that the tension behind it is the effort.
+TEST(LongLines, SlipOverManyPosts) {
+  constexpr double kFriction = 0.15;
+  Simulation s = posts(kFriction);
+  const double start = s.energies().total();
+  for (int n = 0; n < 500; ++n) {
+    ASSERT_TRUE(s.step().converged);
+    const Energies now = s.energies();
+    EXPECT_NEAR(now.total() + now.dissipated - now.work, start, 1e-9);  // works of up to 40 J
+  }
+  const double ratio = std::exp(kFriction * 9 * M_PI / 6);
+  EXPECT_NEAR(value_of(s, "tendon/rope/tension"), 20, 20 * 1e-6);
+  EXPECT_NEAR(value_of(s, "tendon/rope/last_tension"), 20 * ratio, 20 * ratio * 1e-6);
+  const double slipped = 20 * (ratio - 1) * 0.475;
+  EXPECT_NEAR(s.energies().dissipated, slipped, 0.01 * slipped);  // but for the start
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ Riders riders_of(const std::string& text) {
     out.in_all += order.most_riders(static_cast<int>(p));
     out.largest_border = std::max(out.largest_border, border);
     int own = 6 + 6 * static_cast<int>(part.pieces.size());
-    for (const auto& [coupling, node] : part.factors) own += order.dof().size[order.auxiliary(coupling)];
+    for (const auto& factor : part.factors) own += order.dof().size[order.auxiliary(factor.coupling, factor.group)];
+    for (const auto& [coupling, row, column] : part.inners) own += 2 * order.dof().size[order.auxiliary(coupling, row)];
     out.unexpected = std::max(out.unexpected, border - own - order.most_riders(static_cast<int>(p)));
   }
   return out;
@@ -68,7 +69,7 @@ TEST(TreeOrder, VariablesRideOnlyWhereTheyPass) {
 }
 
 /// Returns a beam with a body at the end of each element, and a line over all bodies.
-std::string beam_with_line(int elements) {
+std::string beam_with_line(int elements, double friction = 0) {
   std::string text = fmt::format(
       R"(<robot name="line"><link name="world"/><link name="rod"><beam elements="{}"><centerline><line to="1 0 0"/>
          </centerline><section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/>
@@ -81,7 +82,8 @@ std::string beam_with_line(int elements) {
                            <joint name="glue{0}" type="fixed"><parent link="rod"/><child link="disc{0}"/>
                            <origin xyz="{1} 0 0"/></joint>)",
                         i, static_cast<double>(i) / elements);
-    guides += fmt::format(R"(<via link="disc{}" at="0 0 0.1"/>)", i);
+    guides +=
+        fmt::format(R"(<via link="disc{}" at="0 0 0.1" friction="{}"/>)", i, 1 < i && i < elements ? friction : 0);
   }
   return text + R"(<tendon name="line" ea="1e3">)" + guides + R"(</tendon><winch name="hoist" tendon="line">
     <drive rotor_inertia="1"/></winch></robot>)";
@@ -96,6 +98,17 @@ TEST(TreeOrder, ALineOverManyBodiesKeepsBordersSmall) {
   EXPECT_EQ(forty.largest_border, ten.largest_border);
   EXPECT_EQ(forty.unexpected, 0);
   EXPECT_LE(forty.largest_border, 6 + 6 + 2);  // the inboard node, the next body, and both changes of length
+}
+
+// Each part has three auxiliary variables, which couple neighbours.
+TEST(TreeOrder, ALineWithFrictionOverManyBodiesKeepsBordersSmall) {
+  const Riders ten = riders_of(beam_with_line(10, 0.1)), twenty = riders_of(beam_with_line(20, 0.1)),
+               forty = riders_of(beam_with_line(40, 0.1));
+  EXPECT_EQ(forty.in_all - twenty.in_all, 2 * (twenty.in_all - ten.in_all));
+  EXPECT_EQ(forty.largest_border, ten.largest_border);
+  EXPECT_EQ(forty.unexpected, 0);
+  // The inboard node, the next body, the winch's node, and the parts on both sides and those beside them.
+  EXPECT_LE(forty.largest_border, 6 + 6 + 6 + 4 * 3);
 }
 
 constexpr const char* kSlider = R"(<robot name="slider"><link name="world"/>
