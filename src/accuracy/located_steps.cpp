@@ -103,6 +103,7 @@ void LocatedSteps::set(int steps, double tolerance) {
   steps_ = steps;
   tolerance_ = tolerance;
   iterations = recoveries = 0;
+  turn = 0;
   next_ = 1;
 }
 
@@ -120,6 +121,7 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
   StepResult result = simulation_.step();
   iterations += result.iterations;
   recoveries += result.other_guesses + (has_events_ ? 0 : result.halvings);
+  turn = std::max(turn, 2 * std::atan(0.5 * result.largest_rotation));
   return result;
 }
 

@@ -28,12 +28,13 @@ class LocatedSteps {
   /// Length of the longest steps [s].
   double step() const { return longest_ / steps_; }
   /// Advances to the end of the cell that ends at `time` [s]. Counts `iterations` and `recoveries`, with those of
-  /// repeated steps, and the steps of `run`, and sets `run.last`. Returns false if a step has failed or the watcher
+  /// repeated steps, `turn`, and the steps of `run`, and sets `run.last`. Returns false if a step has failed or the watcher
   /// ends the run; `run.end` says which.
   bool advance_to(double time, RunWatcher& watcher, AccurateRun& run);
 
   long iterations = 0;  ///< of Newton's method
   int recoveries = 0;   ///< other guesses, and halvings unless events may cause them
+  double turn = 0;      ///< largest rotation of a node in a sub-step [rad]
 
  private:
   double steps_of(double length, double steps) const;

@@ -31,6 +31,9 @@ constexpr double kSurprise = 2;
 /// round-off.
 constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 6;
+/// If a node turns by more than this in a step, its rotation lags so much that the error need not fall, and steps of
+/// different lengths may even agree, after both were halved [rad]. (docs/notes/beyond.md 1.4)
+constexpr double kResolvedTurn = 1;
 /// For this many tries after one that has not reduced the error, errors are not believed to fall with the order of the
 /// scheme.
 constexpr int kUnsettled = 2;
@@ -167,10 +170,12 @@ bool SchemeTries::judge(AccurateRun& run) {
   }
   if (!is_compared) return false;
   // Further tries with more steps that are not better mean round-off, or a motion that amplifies it.
-  const bool is_better = !(estimate_ > 0.5 * last);
-  stagnations_ = is_better ? 0 : stagnations_ + 1;
+  const bool is_better = !(estimate_ > 0.5 * last), is_resolved = stepping_.turn <= kResolvedTurn;
+  stagnations_ = is_better || !is_resolved ? 0 : stagnations_ + 1;
   unsettled_ = is_better ? std::max(unsettled_ - 1, 0) : kUnsettled;
-  if (stagnations_ < (last < kRoundOffBelow ? 1 : kMostStagnations)) return false;
+  const bool may_be_round_off = last < kRoundOffBelow && was_resolved_;
+  was_resolved_ = is_resolved;
+  if (stagnations_ < (may_be_round_off ? 1 : kMostStagnations)) return false;
   run.end = AccurateRun::End::NoConvergence;
   return true;
 }

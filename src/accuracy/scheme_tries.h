@@ -90,6 +90,7 @@ class SchemeTries {
   double planned_ = 0;        // steps of the last try
   double expected_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, unsettled_ = 0, judged_ = 0;
+  bool was_resolved_ = true;  // whether steps of the last judged try turned nodes by small angles
   const JudgedMotion* other_limit_ = nullptr;
   JudgedMotion limit_;
   // Of the last judged try, and of the one judged before it.
