@@ -28,8 +28,8 @@ class LocatedSteps {
   /// Length of the longest steps [s].
   double step() const { return longest_ / steps_; }
   /// Advances to the end of the cell that ends at `time` [s]. Counts `iterations` and `recoveries`, with those of
-  /// repeated steps, `turn`, and the steps of `run`, and sets `run.last`. Returns false if a step has failed or the watcher
-  /// ends the run; `run.end` says which.
+  /// repeated steps, `turn`, and the steps of `run`, and sets `run.last`. Returns false if a step has failed or the
+  /// watcher ends the run; `run.end` says which.
   bool advance_to(double time, RunWatcher& watcher, AccurateRun& run);
 
   long iterations = 0;  ///< of Newton's method

@@ -263,6 +263,7 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
   report.real_time = measure_real_time(folder, quick);
   report.planar = compare_planar(folder, report);
   report.contacts = compare_contacts(quick);
+  report.batches = compare_batches(folder, quick);
   return report;
 }
 

@@ -179,12 +179,22 @@ struct ContactRun {
   bool is_driven = false;  ///< external forces do work, which other programs do not report
 };
 
+/// Arms that are stepped one after the other by one thread, and together by several (Batch). Medians of wall times.
+struct BatchComparison {
+  std::string scene;
+  std::size_t arms;
+  int threads;  ///< of the batch
+  long steps;   ///< of each arm
+  double alone_seconds, together_seconds;
+};
+
 struct SpeedReport {
   std::vector<SpeedMeasurement> measurements;
   std::vector<IterationCost> iteration_costs;
   std::vector<RealTimeOutcome> real_time;
   std::vector<PlanarComparison> planar;
   std::vector<ContactRun> contacts;
+  std::vector<BatchComparison> batches;
   bool quick = false;
 };
 
@@ -202,6 +212,10 @@ std::string planar_table(const std::vector<PlanarComparison>& comparisons);
 /// Also scenes of flexarm with contacts that are never close, and without contacts.
 std::vector<ContactRun> compare_contacts(bool quick);
 std::string contact_table(const std::vector<ContactRun>& runs);
+
+/// Times of many arms. `folder`: as of measure_speed().
+std::vector<BatchComparison> compare_batches(const std::string& folder, bool quick);
+std::string batch_table(const std::vector<BatchComparison>& comparisons);
 
 /// The tables. `picture`: file name of the plot in the same folder; empty: none.
 std::string to_markdown(const SpeedReport& report, const std::string& picture);

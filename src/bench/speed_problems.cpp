@@ -184,6 +184,10 @@ std::vector<RealTimeScene> real_time_scenes() {
       {"sliding arm at 1 kHz", "examples/sliding_arm.urdf", "", "load", "auto", 2, Unit::TimesRealTime, 15},
       {"demo arm at 1 kHz", "demo_arm.urdf", "demo_commands.yaml", "payload", "auto", 10, Unit::TimesRealTime, 40},
       {"tower crane at 1 kHz", "examples/tower_crane.urdf", "", "load", "auto", 40, Unit::TimesRealTime, 50},
+      {"arm of three flexible tubes at 1 kHz", "speed/control_arm.urdf", "", "tip", "auto", 4,
+       Unit::MicrosecondsPerStep, 6},
+      {"the same in a plane at 1 kHz", "speed/control_arm_in_a_plane.urdf", "", "tip", "auto", 4,
+       Unit::MicrosecondsPerStep, 4},
       {"rigid four-bar at 1 kHz", "speed/rigid_four_bar.urdf", "", "middle", "auto", 2, Unit::MicrosecondsPerStep, 8},
       {"rigid six-joint arm at 1 kHz", "speed/six_joint_arm.urdf", "", "tip", "auto", 1,
        Unit::MicrosecondsPerTwoIterations, 6}};

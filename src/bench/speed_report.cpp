@@ -290,6 +290,11 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
         "\n## Bodies in contact\n\nSteps of 1 ms; MuJoCo with its defaults (its soft contacts creep, and their energy "
         "gain is the one that MuJoCo reports).\n\n" +
         contact_table(report.contacts);
+  if (!report.batches.empty())
+    text +=
+        "\n## Many at once\n\nCopies of an arm with different starts, in steps of 1 ms, one after the other in one "
+        "thread and together in a `Batch`, in turns; medians of wall times.\n\n" +
+        batch_table(report.batches);
   if (!report.iteration_costs.empty())
     text +=
         "\n## Cost of an iteration\n\nRight-angle cantilever, 32 elements, steps of 0.05 s, a factorisation in every "

@@ -21,6 +21,7 @@ void bind_commands(SimulationClass& simulation);
 void bind_payloads(SimulationClass& simulation);
 void bind_recordings(pybind11::module_& module);
 void bind_runs(SimulationClass& simulation);
+void bind_batch(pybind11::module_& module);
 void bind_analysis(SimulationClass& simulation);
 void bind_linear_models(pybind11::module_& module, SimulationClass& simulation);
 void bind_sensitivities(pybind11::module_& module, SimulationClass& simulation);

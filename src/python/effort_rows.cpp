@@ -29,20 +29,27 @@ std::vector<std::size_t> commanded_joints(const Simulation& simulation, const st
 }  // namespace
 
 EffortRows::EffortRows(const Simulation& simulation, const std::optional<Array>& efforts,
-                       const std::optional<std::vector<Key>>& joints, long steps) {
+                       const std::optional<std::vector<Key>>& joints, long steps, std::size_t batch) {
   if (!efforts) return;
   joints_ = commanded_joints(simulation, joints);
-  const auto columns = static_cast<pybind11::ssize_t>(joints_.size());
-  const bool is_row = efforts->ndim() == 1 && efforts->shape(0) == columns;
-  const bool are_rows = efforts->ndim() == 2 && efforts->shape(0) == steps && efforts->shape(1) == columns;
-  if (!is_row && !are_rows) {
+  using Shape = std::vector<pybind11::ssize_t>;
+  const auto columns = static_cast<pybind11::ssize_t>(joints_.size()), size = static_cast<pybind11::ssize_t>(batch);
+  const Shape given(efforts->shape(), efforts->shape() + efforts->ndim()),
+      row = {columns}, of_steps = batch > 0 ? Shape{size, steps, columns} : Shape{steps, columns},
+      of_batch = batch > 0 ? Shape{size, columns} : row;
+  if (given != row && given != of_steps && given != of_batch) {
     std::vector<std::string> names;
     for (const std::size_t joint : joints_) names.push_back(simulation.coordinate_names()[joint]);
-    throw std::invalid_argument(fmt::format("efforts: expected the shape ({}, {}) or ({},), of the joints [{}], got {}",
-                                            steps, columns, columns, fmt::join(names, ", "), shape_text(*efforts)));
+    throw std::invalid_argument(fmt::format("efforts: expected the shape ({}){} or ({},), of the joints [{}], got {}",
+                                            fmt::join(of_steps, ", "),
+                                            batch > 0 ? fmt::format(", ({})", fmt::join(of_batch, ", ")) : "", columns,
+                                            fmt::join(names, ", "), shape_text(*efforts)));
   }
   efforts_ = efforts->data();
-  stride_ = are_rows ? columns : 0;
+  if (given == of_steps)
+    stride_ = columns, batch_stride_ = batch > 0 ? steps * columns : 0;
+  else if (given == of_batch)
+    batch_stride_ = batch > 0 ? columns : 0;
   for (pybind11::ssize_t i = 0; i < efforts->size(); ++i)
     if (!std::isfinite(efforts_[i]))
       throw std::invalid_argument(

@@ -1,6 +1,7 @@
 #pragma once
 /// Guards a simulation against simultaneous use by several Python threads.
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -44,6 +45,16 @@ class GuardedSimulation {
     const InWork in_work(is_in_work_);
     const pybind11::gil_scoped_release unlocked;
     return work(simulation);
+  }
+
+  /// Calls `work()`, which uses all these simulations, without the GIL.
+  template <class Work>
+  static void work_on_all(const std::vector<std::shared_ptr<GuardedSimulation>>& simulations, const Work& work) {
+    for (const auto& simulation : simulations) simulation->use();
+    std::deque<InWork> in_work;
+    for (const auto& simulation : simulations) in_work.emplace_back(simulation->is_in_work_);
+    const pybind11::gil_scoped_release unlocked;
+    work();
   }
 
   std::shared_ptr<GuardedSimulation> copy() { return std::make_shared<GuardedSimulation>(*this, use().copy()); }

@@ -33,6 +33,7 @@ PYBIND11_MODULE(_flexarm, module) {
   bind_commands(simulation);
   bind_payloads(simulation);
   bind_runs(simulation);
+  bind_batch(module);
   bind_analysis(simulation);
   bind_linear_models(module, simulation);
   bind_sensitivities(module, simulation);

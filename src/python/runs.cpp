@@ -8,6 +8,7 @@
 #include "python/bindings.h"
 #include "python/effort_rows.h"
 #include "python/errors.h"
+#include "python/recorder.h"
 #include "python/signal_clock.h"
 
 namespace py = pybind11;
@@ -15,7 +16,6 @@ namespace py = pybind11;
 namespace flexarm::python {
 namespace {
 
-using Patterns = std::vector<std::string>;
 /// Without forcecast, so that an array of another type is refused: results would go into a copy.
 using Results = py::array_t<double, py::array::c_style>;
 
@@ -26,29 +26,6 @@ StepResult step(GuardedSimulation& guarded) {
   return result;
 }
 
-/// Records a row of results after every `every` steps.
-class Recorder {
- public:
-  Recorder(ResultColumns* columns, double* place, long every) : columns_(columns), place_(place), every_(every) {}
-
-  void note(const Simulation& simulation, const StepResult& result) {
-    counts_.add(result);
-    if (!columns_ || !result.converged || ++steps_ % every_ != 0) return;
-    const std::vector<double>& row = columns_->row(simulation, counts_);
-    place_ = std::copy(row.begin(), row.end(), place_);
-    counts_ = {};
-    ++rows_;
-  }
-  py::ssize_t rows() const { return rows_; }
-
- private:
-  ResultColumns* columns_;  // null: nothing is recorded
-  double* place_;
-  long every_, steps_ = 0;
-  py::ssize_t rows_ = 0;
-  StepCounts counts_;
-};
-
 Results room_for(const std::optional<Results>& out, py::ssize_t rows, const ResultColumns& columns) {
   const auto width = static_cast<py::ssize_t>(columns.columns().size());
   if (!out) return Results(std::vector<py::ssize_t>{rows, width});
@@ -58,15 +35,10 @@ Results room_for(const std::optional<Results>& out, py::ssize_t rows, const Resu
   return *out;
 }
 
-void require(bool ok, const char* name, const char* expected, long got) {
-  if (!ok) throw std::invalid_argument(fmt::format("{}: expected {}, got {}", name, expected, got));
-}
-
 py::object run(GuardedSimulation& guarded, long steps, const std::optional<Array>& efforts,
                const std::optional<std::vector<Key>>& joints, const std::optional<Patterns>& record, long every,
                const std::optional<Results>& out) {
-  require(steps >= 0, "steps", "a number >= 0", steps);
-  require(every >= 1, "every", "a number >= 1", every);
+  require_run(steps, every);
   if (out && !record) throw std::invalid_argument("out: expected only with 'record', which names its columns");
   const EffortRows commands(guarded.use(), efforts, joints, steps);
   ResultColumns* const columns = record ? &guarded.columns(*record) : nullptr;

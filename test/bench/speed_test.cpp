@@ -155,6 +155,9 @@ TEST(SpeedReport, HasEveryProblemAndFiniteNumbers) {
   for (const RealTimeScene& scene : real_time_scenes())
     EXPECT_NE(text.find("\n| " + scene.title + " ["), std::string::npos) << scene.title;
   EXPECT_NE(text.find("\n| six_joint_arm, 0.06 s [time over MuJoCo RK4's] "), std::string::npos);
+  ASSERT_FALSE(report.batches.empty());
+  for (const BatchComparison& batch : report.batches)
+    EXPECT_NE(text.find("\n| " + batch.scene + " | "), std::string::npos) << batch.scene;
   EXPECT_NE(text.find("](speed.png)"), std::string::npos);
   for (const std::string& output : {text, data})
     for (const char* word : {"nan", "inf"}) EXPECT_EQ(output.find(word), std::string::npos) << word;

@@ -20,7 +20,8 @@ PACKAGE = os.path.dirname(flexarm._flexarm.__file__)
 # Differences that the checker shall ignore. Classes made by pybind11 have another metaclass and no constructor. The
 # stand-ins for gymnasium are defined twice. A name that is imported for types alone does not exist at run time.
 OVERLOOKED = r"""
-flexarm(\._flexarm|\.environment)?\.(LinearModel|RunEvent|Scene|Sensitivities|Simulation|State|StepResult)(\.__init__)?
+flexarm(\._flexarm|\.environment)?\.(Batch|Scene|Simulation|State|StepResult)(\.__init__)?
+flexarm(\._flexarm)?\.(LinearModel|RunEvent|Sensitivities)(\.__init__)?
 flexarm(\._flexarm)?\.Recording(\.__init__)?
 flexarm\.spaces\..*-redefinition
 flexarm\.values\.Scene

@@ -17,6 +17,7 @@ _HOMES = {
     "read_scene": "_flexarm",
     "read_scene_text": "_flexarm",
     "tune": "_flexarm",
+    "Batch": "_flexarm",
     "LinearModel": "_flexarm",
     "Recording": "_flexarm",
     "RunEvent": "_flexarm",

@@ -276,6 +276,39 @@ class Simulation:
         most_steps: float = ...,
     ) -> AccurateRun: ...
 
+class Batch:
+    def __init__(self, simulations: Sequence[Simulation], threads: Optional[int] = ...) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Simulation: ...
+    @property
+    def threads(self) -> int: ...
+    @property
+    def failures(self) -> List[Optional[str]]: ...
+    @overload
+    def run(
+        self,
+        steps: int,
+        efforts: Optional[npt.ArrayLike] = ...,
+        joints: Optional[Sequence[_Key]] = ...,
+        record: None = ...,
+        every: int = ...,
+        which: Optional[Sequence[bool]] = ...,
+        raise_failures: bool = ...,
+    ) -> None: ...
+    @overload
+    def run(
+        self,
+        steps: int,
+        efforts: Optional[npt.ArrayLike] = ...,
+        joints: Optional[Sequence[_Key]] = ...,
+        *,
+        record: Sequence[str],
+        every: int = ...,
+        which: Optional[Sequence[bool]] = ...,
+        raise_failures: bool = ...,
+    ) -> _Floats: ...
+    def row(self, record: Sequence[str] = ...) -> _Floats: ...
+
 class LinearModel:
     @property
     def a(self) -> _Floats: ...

@@ -1,13 +1,12 @@
 """Simulations as environments for reinforcement learning: single ones, and vectors that step in threads."""
 
-import concurrent.futures
 import copy
 import os
 import typing
 
 import numpy
 
-from ._flexarm import Scene, Simulation
+from ._flexarm import Batch, Scene, Simulation
 from .errors import StepError
 from .spaces import AUTORESET, Box, Env, VectorEnv, batch_space, register
 
@@ -100,18 +99,14 @@ class Environment(Env):
         of the simulation fails, the episode ends, and the dictionary's "failure" contains the reason.
         """
         action = numpy.ascontiguousarray(action, dtype=float)
-        return self._judge(action, self._advance(action))
-
-    def _advance(self, action: numpy.ndarray) -> typing.Optional[str]:
-        """Makes the steps of an action without Python's global lock. Returns why a step failed, or None."""
+        failure = None
         try:
             self.simulation.run(self._steps, action, self.action_joints)
-        except StepError as failure:
-            return str(failure)
-        return None
+        except StepError as error:
+            failure = str(error)
+        return self._judge(self._observe(), action, failure)
 
-    def _judge(self, action: numpy.ndarray, failure: typing.Optional[str]) -> Outcome:
-        observation = self._observe()
+    def _judge(self, observation: numpy.ndarray, action: numpy.ndarray, failure: typing.Optional[str]) -> Outcome:
         if failure is not None:
             return observation, float(self._failure_reward), True, False, {"failure": failure}
         reward = float(self._reward(observation, action, self.simulation))
@@ -155,9 +150,7 @@ class VectorEnvironment(VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._ended = [False] * num_envs
-        self._threads = min(threads or len(os.sched_getaffinity(0)), num_envs)
-        # The calling thread is one of the threads.
-        self._pool = concurrent.futures.ThreadPoolExecutor(self._threads - 1) if self._threads > 1 else None
+        self._batch = Batch([each.simulation for each in self.environments], threads)
 
     def reset(self, *, seed: typing.Union[None, int, typing.Sequence[typing.Optional[int]]] = None,
               options: typing.Optional[Info] = None) -> typing.Tuple[numpy.ndarray, Info]:
@@ -188,37 +181,18 @@ class VectorEnvironment(VectorEnv):
             raise ValueError("actions: expected the shape %s, got %s" % (self.action_space.shape, actions.shape))
         if not numpy.isfinite(actions).all():
             raise ValueError("actions: expected finite numbers, got %s" % actions[~numpy.isfinite(actions)][0])
-        failures = self._advance(actions)
+        first = self.environments[0]
+        moving = [not ended for ended in self._ended]
+        self._batch.run(first._steps, actions, first.action_joints, which=moving, raise_failures=False)
+        rows = self._batch.row(first._record)[:, first._first:]
         outcomes: typing.List[Outcome] = []
-        for each, action, failure, ended in zip(self.environments, actions, failures, self._ended):
-            outcomes.append((each.reset()[0], 0.0, False, False, {}) if ended else each._judge(action, failure))
+        failures = self._batch.failures
+        for each, row, action, failure, ended in zip(self.environments, rows, actions, failures, self._ended):
+            outcomes.append((each.reset()[0], 0.0, False, False, {}) if ended else each._judge(row, action, failure))
         observations, rewards, terminated, truncated, infos = zip(*outcomes)
         self._ended = [a or b for a, b in zip(terminated, truncated)]
         return (numpy.array(observations), numpy.array(rewards), numpy.array(terminated), numpy.array(truncated),
                 _joined(infos))
-
-    def _advance(self, actions: numpy.ndarray) -> typing.List[typing.Optional[str]]:
-        failures: typing.List[typing.Optional[str]] = [None] * self.num_envs
-        moving = [i for i, ended in enumerate(self._ended) if not ended]
-
-        def advance(some: typing.Sequence[int]) -> None:
-            for i in some:
-                failures[i] = self.environments[i]._advance(actions[i])
-
-        shares = [moving[k::self._threads] for k in range(self._threads)]
-        others = [self._pool.submit(advance, share) for share in shares[1:]] if self._pool else []
-        try:
-            advance(shares[0])
-        finally:
-            concurrent.futures.wait(others)
-        for other in others:
-            other.result()
-        return failures
-
-    def close_extras(self, **options: typing.Any) -> None:
-        """Ends the threads."""
-        if self._pool is not None:
-            self._pool.shutdown()
 
 
 def _joined(infos: typing.Sequence[Info]) -> Info:
