@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <variant>
 #include <vector>
@@ -38,27 +39,26 @@ struct Table {
   }
 };
 
-/// A compiled expression of t. The parser has a pointer to `t_`, which every evaluation writes. So a copy compiles the
-/// expression anew.
+/// An expression of t. A compiled one has a place for t, which every evaluation writes, so that copies must not share
+/// it. A copy compiles the expression when it is first evaluated: most copies are parts of scenes, and never are.
 class Expression {
  public:
   /// @throws std::invalid_argument
   explicit Expression(std::string text) : text_(std::move(text)) {
-    parser_.DefineVar("t", &t_);
-    compile_expression(parser_, text_, kExpected);
+    compiled();
     has_branches_ = text_.find_first_of("<>=!?&|") != std::string::npos;
     for (const char* corner : {"abs", "sign", "rint", "min", "max"})
       has_branches_ = has_branches_ || text_.find(corner) != std::string::npos;
   }
-  Expression(const Expression& other) : Expression(other.text_) {}
+  Expression(const Expression& other) : text_(other.text_), has_branches_(other.has_branches_) {}
   Expression& operator=(const Expression&) = delete;
 
   /// Returns the value at a time. Recent values are cached, since the end of a step is the beginning of the next.
   double operator()(double time) const {
     for (const Known& known : known_)
       if (known.time == time) return known.value;
-    t_ = time;
-    const double value = parser_.Eval();
+    compiled().t = time;
+    const double value = compiled().parser.Eval();
     known_[next_] = {time, value};
     next_ = (next_ + 1) % known_.size();
     return value;
@@ -67,19 +67,32 @@ class Expression {
   /// Returns the value if it does not depend on t. This modifies the parser, so call it only on a copy of an expression
   /// that is in use.
   std::optional<double> constant() {
-    return parser_.GetUsedVar().empty() ? std::optional(parser_.Eval()) : std::nullopt;
+    mu::Parser& parser = compiled().parser;
+    return parser.GetUsedVar().empty() ? std::optional(parser.Eval()) : std::nullopt;
   }
 
  private:
+  struct Compiled {
+    double t = 0;
+    mu::Parser parser;
+  };
+  Compiled& compiled() const {
+    if (!compiled_) {
+      compiled_ = std::make_unique<Compiled>();
+      compiled_->parser.DefineVar("t", &compiled_->t);
+      compile_expression(compiled_->parser, text_, kExpected);
+    }
+    return *compiled_;
+  }
+
   std::string text_;
   struct Known {
     double time = std::numeric_limits<double>::quiet_NaN(), value = 0;
   };
-  mutable double t_ = 0;
   mutable std::array<Known, 4> known_;  // several, since a mean evaluates further times after that at the step's end
   mutable std::size_t next_ = 0;
   bool has_branches_ = false;
-  mu::Parser parser_;
+  mutable std::unique_ptr<Compiled> compiled_;  // null: not yet
 };
 
 /// Returns the mean of a function that is a polynomial between its points and constant outside. `of_piece(a, b)`:
@@ -180,7 +193,7 @@ void read_table(std::string_view text, Function& function) {
 
 }  // namespace
 
-/// Can be copied but not moved: a move would compile expressions anew, which may throw.
+/// Can be copied but not moved.
 struct TimeFunction::Implementation {
   Implementation() = default;
   template <class Kind>
