@@ -1,12 +1,14 @@
 // Tests simulations in several threads. The program is built with the thread sanitizer, which ends it with an error if
 // threads have a data race.
 #include <array>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
+#include "flexarm/simulation/batch.h"
 #include "support/source_path.h"
 
 namespace flexarm {
@@ -37,6 +39,20 @@ TEST(Simulations, RunEachInAThreadOfItsOwn) {
     EXPECT_EQ(positions[0], positions[1]) << name;
     EXPECT_EQ(positions[0], positions[2]) << name;
   }
+}
+
+// A batch hands its simulations to its threads again and again.
+TEST(Simulations, AreSteppedTogetherInABatch) {
+  const scene::ReadResult read =
+      scene::read_scene_file(test::source_path("config/examples/flexible_two_link_arm.urdf"));
+  ASSERT_TRUE(read.scene);
+  Batch batch(Simulation(*read.scene), 7, 3);
+  std::vector<StepResult> results;
+  for (int n = 0; n < 10; ++n) {
+    batch.step(results);
+    for (const StepResult& result : results) EXPECT_TRUE(result.converged);
+  }
+  for (std::size_t i = 1; i < batch.size(); ++i) EXPECT_EQ(batch[i].position(0), batch[0].position(0));
 }
 
 }  // namespace
