@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "integrators/dissipative_substitute.h"
+#include "integrators/explicit_step.h"
 #include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
 #include "model/line_release.h"
@@ -47,6 +48,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   before_.wrenches.reserve(kRoomForWrenches);
   if (settings.on_failure == OnFailure::Dissipate)
     substitute_ = std::make_unique<DissipativeSubstitute>(model, scheme, settings);
+  if (scheme.tableau) explicit_ = std::make_unique<ExplicitStep>(model, scheme);
 }
 
 Stepper::~Stepper() = default;
@@ -73,7 +75,17 @@ void Stepper::observe(StepObserver* observer) {
   newton_.observe(observer);
 }
 
+bool Stepper::explicit_step(State& state, double step, StepResult& result) {
+  ++result.iterations;
+  if (explicit_->advance(state, step)) return true;
+  result.reason = StepResult::Reason::NotFinite;
+  result.failure.time = state.time;
+  result.failure.step = step;
+  return false;
+}
+
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
+  if (explicit_) return explicit_step(state, step, result);
   if (!scheme_.is_composition) return simple_step(state, step, result);
   before_ = state;
   if (follower_) follower_->keep();
@@ -204,7 +216,7 @@ bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& r
 }
 
 StepResult Stepper::give_up(bool is_late, StepResult result) {
-  locate_failure(system_, result);
+  if (!explicit_) locate_failure(system_, result);
   if (is_late) result.reason = StepResult::Reason::OutOfTime;
   invalidate();
   return result;

@@ -13,6 +13,7 @@
 namespace flexarm {
 
 class DissipativeSubstitute;
+class ExplicitStep;
 
 /// Advances states of one model with one scheme. Allocates no memory after the first step, except when a slider enters
 /// another element and the model needs a sparse matrix (see SparseTangent).
@@ -63,6 +64,7 @@ class Stepper {
   /// Does one sub-step. A composed scheme does several simple steps. After a failure the state is unchanged.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);
+  bool explicit_step(State& state, double step, StepResult& result);
   /// Returns the reason why a solution must not be accepted. Records the largest rotation and the time of an event.
   StepResult::Reason flaw_of_solution(const State& state, double step, StepResult& result);
   /// Returns the reason due to the search for events; called for solutions without any other flaw.
@@ -78,6 +80,7 @@ class Stepper {
   NewtonIteration newton_;
   bool may_release_;                                   // whether there are sliders that may leave their lines
   std::unique_ptr<DissipativeSubstitute> substitute_;  // null unless OnFailure::Dissipate
+  std::unique_ptr<ExplicitStep> explicit_;             // null unless the scheme is explicit
   State before_;                                       // state at the beginning of a composed step, to undo it
   double begin_ = 0, event_ = 0;                       // start of the whole step; time from there to the event [s]
   double rest_ = 0;                                    // what is left of the step after a slider has left its line [s]

@@ -41,7 +41,8 @@ std::optional<OnFailure> on_failure_called(std::string_view name) {
 const std::vector<std::string_view>& scheme_names() {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> out = {"auto"};
-    for (const Scheme& scheme : schemes()) out.push_back(scheme.name);
+    for (const std::vector<Scheme>* list : {&schemes(), &explicit_schemes()})
+      for (const Scheme& scheme : *list) out.push_back(scheme.name);
     return out;
   }();
   return names;

@@ -18,8 +18,9 @@ NumericalDissipation numerical_dissipation(int order, double rho, double step) {
 std::vector<const Scheme*> meanings(std::string_view name) {
   // "auto" without and with numerical dissipation.
   if (name == "auto") return {meanings("em").front(), meanings("edmc2").front()};
-  for (const Scheme& scheme : schemes())
-    if (scheme.name == name) return {&scheme};
+  for (const std::vector<Scheme>* list : {&schemes(), &explicit_schemes()})
+    for (const Scheme& scheme : *list)
+      if (scheme.name == name) return {&scheme};
   return {};
 }
 
@@ -30,6 +31,7 @@ std::optional<Scheme> find_scheme(std::string_view name) {
 
 Scheme statics_of(Scheme scheme) {
   scheme.is_static = true;
+  scheme.tableau = nullptr;
   scheme.stress = StressRule::EndPoint;
   return scheme;
 }

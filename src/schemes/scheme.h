@@ -43,8 +43,10 @@ struct Scheme : TimeRule {
   int solves_per_step() const { return is_composition ? kCompositionSteps : 1; }
 };
 
-/// All schemes with their default options; the default scheme is the first.
+/// All implicit schemes with their default options; the default scheme is the first.
 const std::vector<Scheme>& schemes();
+/// Explicit schemes, which simulate trees of rigid links only.
+const std::vector<Scheme>& explicit_schemes();
 /// The scheme with that name and default options; "auto" is the default scheme. Empty if the name is unknown.
 std::optional<Scheme> find_scheme(std::string_view name);
 /// The static rule with the scheme's interpolation, for equilibria: forces in one configuration, without motion.

@@ -1,4 +1,5 @@
 // The table of schemes: one row per scheme, with its name, its traits and a description.
+#include "schemes/explicit_tableau.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
@@ -144,6 +145,19 @@ std::vector<Scheme> build_table() {
 
 const std::vector<Scheme>& schemes() {
   static const std::vector<Scheme> table = build_table();
+  return table;
+}
+
+const std::vector<Scheme>& explicit_schemes() {
+  static const std::vector<Scheme> table = [] {
+    std::vector<Scheme> out(2);
+    out[0].name = "rk4", out[0].order = 4, out[0].tableau = &rk4_tableau();
+    out[0].description = "explicit Runge-Kutta method of order 4, for trees of rigid links";
+    out[1].name = "dop853", out[1].order = 8, out[1].tableau = &dop853_tableau();
+    out[1].description =
+        "explicit Runge-Kutta method of order 8 (Hairer, Norsett and Wanner 1993), for trees of rigid links";
+    return out;
+  }();
   return table;
 }
 

@@ -5,6 +5,8 @@
 
 namespace flexarm {
 
+struct ExplicitTableau;  // schemes/explicit_tableau.h
+
 /// At which instant of a step the stress acts, and how material moments are transformed to spatial ones.
 enum class StressRule {
   EndPoint,           ///< at t_{n+1} (statics, Newmark family)
@@ -55,6 +57,8 @@ enum class HhtForm {
 /// All rules of a scheme for beams, bodies and joints.
 struct TimeRule {
   bool is_static = false;  ///< equilibrium: no inertia and no rates
+  /// An explicit method, which has nothing of the other rules; null: an implicit scheme.
+  const ExplicitTableau* tableau = nullptr;
   /// Statics: test moment rows by the variation of strains, as steps of the EM family do at rest; else by Lagrange
   /// functions.
   bool tests_vary_strains = false;

@@ -262,7 +262,17 @@ void PastMotion::go_back(const MotionView& view, int step, double begin) {
   }
 }
 
+/// The acceleration of a point of a rigid link, from that of its node, which explicit schemes know.
+static ProbeAcceleration acceleration_by_node(const State& state, const ProbePoint& point) {
+  if (point.attachment.node < 0) return {};
+  const NodeState& node = state.nodes[point.attachment.node];
+  const Vector3 arm = node.orientation * point.attachment.offset.position;
+  const Vector3 spin = node.orientation * node.angular_velocity, change = node.orientation * node.angular_acceleration;
+  return {node.acceleration + change.cross(arm) + spin.cross(spin.cross(arm)), change};
+}
+
 ProbeAcceleration PastMotion::acceleration(const MotionView& view, const ProbePoint& point) const {
+  if (view.rule.tableau) return acceleration_by_node(view.state, point);
   MeanRates velocity, spin;
   velocity.count = spin.count = count_;
   velocity.length = spin.length = length_;

@@ -50,6 +50,9 @@ class Sensitivities::Implementation {
       : simulation(own), request(std::move(wanted)), steps(model_of(own), scheme_of(own)) {
     if (!is_at_start(own))
       throw std::invalid_argument("derivatives need the whole run: the simulation has moved; call reset() first");
+    if (scheme_of(own).tableau)
+      throw std::invalid_argument(fmt::format(
+          "derivatives follow the equations of implicit steps; '{}' is an explicit scheme", scheme_of(own).name));
     for (const std::string& name : request.parameters) {
       parameters.push_back(std::make_unique<ParameterDirection>(simulation, request, name));
       names.push_back(name);

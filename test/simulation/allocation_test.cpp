@@ -223,6 +223,24 @@ TEST_F(Allocation, NoneInDrivesAndServos) {
   }
 }
 
+TEST_F(Allocation, NoneInExplicitSteps) {
+  for (const char* scheme : {"rk4", "dop853"}) {
+    SceneBuilder b;
+    const Matrix3 inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();
+    b.body("upper", 1, {0.5, 0, 0}, inertia);
+    b.body("fore", 0.7, {0, 0.4, 0}, inertia);
+    b.joint("shoulder", scene::JointKind::Continuous, "world", "upper");
+    b.joint("ball", scene::JointKind::Spherical, "upper", "fore", {1, 0, 0});
+    b.scene.gravity = {0, -9.81, 0};
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(b.scene, options);
+    int converged = 0;
+    expect_none_after_the_first_step(simulation, 100, [&](const StepResult& result) { converged += result.converged; });
+    EXPECT_EQ(converged, 100) << scheme;
+  }
+}
+
 TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
   for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3"}) {
     SimulationOptions options;

@@ -1,0 +1,68 @@
+#pragma once
+/// Forward dynamics of a tree of rigid bodies at an instant, by articulated bodies: O(n), without a mass matrix.
+/// (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7; docs/notes/explicit.md)
+
+#include <vector>
+
+#include "joints/joint_map.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// The tree of a model without beams, slides and loop closures. Allocates no memory after construction.
+class ArticulatedBodies {
+ public:
+  explicit ArticulatedBodies(const Model& model);
+
+  /// Number of rates, of all joints together. A joint's rates are those of released_rates().
+  int rate_count() const { return rate_count_; }
+  int first_rate(int joint) const { return links_[joint].first; }
+
+  /// Sets the configuration and the rates, and all forces to those of gravity. `released`: per joint. `rates`: of all
+  /// joints.
+  void set(const std::vector<Released>& released, const double* rates);
+  const Matrix3& rotation(int node) const { return bodies_[node].rotation; }
+  const Vector3& position(int node) const { return bodies_[node].position; }
+  const Vector6& velocity(int node) const { return bodies_[node].velocity; }  ///< {v, w}, world axes
+  /// Adds {force, moment about the node} on a node, world axes.
+  void add_force(int node, const Vector6& force) { bodies_[node].bias -= force; }
+  /// Computes the derivatives of the rates. `efforts`, `armatures`: per rate; the latter is an inertia that moves with
+  /// the joint alone, such as that of a rotor [kg m^2 or kg]. `rates_change`: output.
+  void accelerate(const double* efforts, const double* armatures, double* rates_change);
+  const Vector6& acceleration(int node) const { return bodies_[node].acceleration; }  ///< d{v, w}/dt
+
+ private:
+  struct Body {
+    double mass = 0;
+    Matrix3 rotary;  // in the node's frame
+    Matrix3 rotation;
+    Vector3 position;
+    Vector6 velocity, bias, acceleration;  // bias: the force that the articulated body needs if its node is not
+                                           // accelerated
+    Matrix6 inertia;                       // of the articulated body
+  };
+  struct Link {
+    JointMapKind kind;
+    int master, slave, first, count;
+    Vector3 origin, translation, axis, arm;  // as in JointMap; axis: a unit vector, or zero
+    double turn;                             // angle per unit of a scalar coordinate
+    Matrix3 frame, slave_frame;              // of the joint in its master, of the slave in the moved joint
+    const CamProfile* profile;
+    // at an instant
+    Vector3 way;              // from master to slave
+    ReleasedColumns columns;  // of the slave's velocity by the rates
+    Vector6 drift;            // the slave's acceleration without those of the master and the rates
+    ReleasedColumns forces;   // inertia * columns
+    ReleasedSquare inverse;
+    ReleasedVector lack;  // what the efforts exceed the bias
+  };
+  void move(Link& link, const Released& released, const double* rates);
+  void pass_on(const Link& link);
+
+  std::vector<Body> bodies_;  // per node
+  std::vector<Link> links_;   // per joint, from the root to the leaves
+  Vector3 gravity_;
+  int rate_count_ = 0;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,126 @@
+// Tests explicit schemes: orders against closed forms, the account of energies, and what they refuse.
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/model/model_error.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+#include "math/pi.h"
+
+namespace flexarm::test {
+namespace {
+
+Simulation simulation_of(const std::string& text, const std::string& scheme, double step) {
+  const scene::ReadResult read = scene::read_scene_text(text, "explicit.urdf");
+  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
+  SimulationOptions options;
+  options.scheme = scheme;
+  options.step = step;
+  return Simulation(*read.scene, options);
+}
+
+std::string link(const std::string& name, const std::string& centre, const std::string& inertias = "0.02 0.03 0.04") {
+  std::istringstream numbers(inertias);
+  double x, y, z;
+  numbers >> x >> y >> z;
+  return "<link name=\"" + name + "\"><inertial><origin xyz=\"" + centre + "\"/><mass value=\"2\"/><inertia ixx=\"" +
+         std::to_string(x) + "\" iyy=\"" + std::to_string(y) + "\" izz=\"" + std::to_string(z) +
+         "\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
+}
+
+struct Method {
+  const char* name;
+  int order;
+  double coarse;  ///< steps whose error is far above round-off, and its half
+};
+
+class ExplicitSchemes : public ::testing::TestWithParam<Method> {};
+
+/// The slope of errors at steps that are halved.
+double order_between(double coarse, double fine) {
+  return std::log2(coarse / fine);
+}
+
+// A pendulum released from the horizontal comes to the other side, at rest, after half its period
+// 4 K(1/2) / sqrt(m g l / J).
+TEST_P(ExplicitSchemes, SwingAPendulum) {
+  constexpr double kFirstKind = 1.8540746773013719184;  // K(m = 1/2)
+  const double rate = std::sqrt(2 * 9.81 * 0.5 / (0.03 + 2 * 0.25)), half = 2 * kFirstKind / rate;
+  const std::string text = "<robot name=\"pendulum\"><link name=\"world\"/>" + link("bob", "0.5 0 0") +
+                           R"(<joint name="hinge" type="continuous"><parent link="world"/><child link="bob"/>
+      <axis xyz="0 1 0"/></joint><simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)";
+  const auto error = [&](int steps) {
+    Simulation s = simulation_of(text, GetParam().name, half / steps);
+    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    return std::hypot(s.position(0) - kPi, s.velocity(0) / rate);
+  };
+  const int steps = static_cast<int>(std::lround(half / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-13);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// A symmetric top without loads: its axis turns about the angular momentum L with |L| / A, and it spins about the axis
+// with w (A - C) / A; A, C: moments of inertia across and along the axis, w: the angular velocity along it.
+TEST_P(ExplicitSchemes, SpinATop) {
+  const std::string text = "<robot name=\"top\"><link name=\"world\"/>" + link("top", "0 0 0", "0.3 0.3 0.5") +
+                           R"(<joint name="free" type="floating"><parent link="world"/><child link="top"/></joint>
+      <simulation><gravity xyz="0 0 0"/><initial link="top" linear="0.3 -0.2 0.1" angular="0.8 0 2"/></simulation></robot>)";
+  constexpr double kTime = 4;
+  const Vector3 momentum(0.3 * 0.8, 0, 0.5 * 2);
+  const Quaternion turned = Quaternion(Eigen::AngleAxisd(kTime * momentum.norm() / 0.3, momentum.normalized())) *
+                            Quaternion(Eigen::AngleAxisd(kTime * 2 * (0.3 - 0.5) / 0.3, Vector3::UnitZ()));
+  const auto error = [&](int steps) {
+    Simulation s = simulation_of(text, GetParam().name, kTime / steps);
+    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    const Pose pose = s.link_pose(1);
+    EXPECT_LT((pose.position - kTime * Vector3(0.3, -0.2, 0.1)).norm(), 1e-12);
+    return pose.orientation.angularDistance(turned);
+  };
+  const int steps = static_cast<int>(std::lround(kTime / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-13);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// Two links with springs, dampers, smooth friction, rotors, an effort and a load: what the energy lacks is the work and
+// what was dissipated, up to the error of the steps. Results are those of em with short steps, whose error is 4e-6.
+TEST_P(ExplicitSchemes, KeepTheAccount) {
+  const std::string text =
+      "<robot name=\"arm\"><link name=\"world\"/>" + link("upper", "0.3 0 0") + link("fore", "0.2 0.1 0") + R"xml(
+    <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/> <axis xyz="0 1 0"/>
+      <dynamics damping="0.3"/></joint>
+    <joint name="elbow" type="prismatic"><parent link="upper"/><child link="fore"/> <axis xyz="1 0 0"/>
+      <origin xyz="0.6 0 0" rpy="0.3 0 0.2"/> <limit lower="-2" upper="2" effort="100" velocity="9"/>
+      <dynamics damping="1"/></joint>
+    <spring joint="elbow" stiffness="60" rest="0.1"/> <drive joint="shoulder" rotor_inertia="0.1"/>
+    <simulation><gravity xyz="0 0 -9.81"/> <effort joint="shoulder" history="3*sin(5*t)"/>
+      <load link="fore" at="0.1 0 0.2" force="2 -1 3" frame="follower" history="1+t"/> </simulation></robot>)xml";
+  const double step = GetParam().order == 4 ? 2e-3 : 1e-2;
+  Simulation s = simulation_of(text, GetParam().name, step), reference = simulation_of(text, "em4", 1e-3);
+  const double start = s.energies().total();
+  while (s.time() < 1 - 1e-9) {
+    ASSERT_TRUE(s.step().converged);
+    const Energies now = s.energies();
+    EXPECT_NEAR(now.total() + now.dissipated - now.work, start, 1e-6);  // energies of 10 J
+  }
+  while (reference.time() < 1 - 1e-9) ASSERT_TRUE(reference.step().converged);
+  EXPECT_GT(s.energies().dissipated, 0.1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(s.position(i), reference.position(i), 1e-6);
+    EXPECT_NEAR(s.velocity(i), reference.velocity(i), 1e-4);
+    EXPECT_NEAR(s.effort(i), reference.effort(i), 1e-2);  // em4's is the mean over its last step
+  }
+  EXPECT_NEAR(s.energies().dissipated, reference.energies().dissipated, 1e-5);
+  EXPECT_NEAR(s.energies().work, reference.energies().work, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, ExplicitSchemes, ::testing::Values(Method{"rk4", 4, 0.05}, Method{"dop853", 8, 0.25}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace flexarm::test
