@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "math/simd.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -18,19 +20,25 @@ Matrix3 turned(const Vector3& axis, double angle) {
   return c * Matrix3::Identity() + (1 - c) * axis * axis.transpose() + s * so3::hat(axis);
 }
 
-/// The inverse of a symmetric, positive definite matrix of the sizes that joints have. Fixed sizes need no heap.
-void invert(const ReleasedSquare& matrix, ReleasedSquare& inverse) {
-  switch (matrix.rows()) {
+/// Calls work(N) with the number of a joint's rates as a constant.
+template <class Work>
+void with_count(int count, const Work& work) {
+  switch (count) {
     case 1:
-      inverse(0, 0) = 1 / matrix(0, 0);
-      break;
+      return work(std::integral_constant<int, 1>());
     case 3:
-      inverse = matrix.topLeftCorner<3, 3>().inverse();
-      break;
+      return work(std::integral_constant<int, 3>());
     case 6:
-      inverse = Eigen::LLT<Matrix6>(matrix).solve(Matrix6::Identity());
-      break;
+      return work(std::integral_constant<int, 6>());
+    default:
+      return;
   }
+}
+
+template <int Count>
+Eigen::Matrix<double, Count, Count> inverse(const Eigen::Matrix<double, Count, Count>& matrix) {
+  if constexpr (Count < 4) return matrix.inverse();
+  return Eigen::LLT<Eigen::Matrix<double, Count, Count>>(matrix).solve(Eigen::Matrix<double, Count, Count>::Identity());
 }
 
 }  // namespace
@@ -53,13 +61,14 @@ ArticulatedBodies::ArticulatedBodies(const Model& model) : bodies_(model.nodes.s
     link.axis = link.turn > 0 ? Vector3(joint.rotation / link.turn) : Vector3::Zero();
     link.slave_frame = joint.slave_orientation.toRotationMatrix();
     link.profile = joint.profile.get();
-    link.columns.setZero(6, link.count), link.forces.setZero(6, link.count);
-    link.inverse.setZero(link.count, link.count), link.lack.setZero(link.count);
+    link.columns.setZero();
   }
 }
 
 void ArticulatedBodies::set(const std::vector<Released>& released, const double* rates) {
-  for (std::size_t j = 0; j < links_.size(); ++j) move(links_[j], released[j], rates + links_[j].first);
+  simd::run([&] {
+    for (std::size_t j = 0; j < links_.size(); ++j) move(links_[j], released[j], rates + links_[j].first);
+  });
 }
 
 /// Places the slave of a joint, and sets what depends on configuration and rates alone.
@@ -90,10 +99,10 @@ void ArticulatedBodies::move(Link& link, const Released& released, const double*
     if (is_free) {
       from += link.frame * released.displacement;
       sliding = link.frame * Eigen::Map<const Vector3>(rates);
-      link.columns.topLeftCorner<3, 3>() = link.frame;
+      link.columns.leftCols<3>() << link.frame, Matrix3::Zero();
     }
     turning = link.frame * Eigen::Map<const Vector3>(rates + (is_free ? 3 : 0));
-    link.columns.bottomRightCorner<3, 3>() = link.frame;
+    link.columns.middleCols<3>(link.count - 3) << Matrix3::Zero(), link.frame;
     turn = link.frame * released.rotation.toRotationMatrix();
   }
   // All of this to world axes.
@@ -120,42 +129,35 @@ void ArticulatedBodies::move(Link& link, const Released& released, const double*
 }
 
 void ArticulatedBodies::accelerate(const double* efforts, const double* armatures, double* rates_change) {
-  for (std::size_t j = links_.size(); j-- > 0;) {
-    Link& link = links_[j];
-    const Body& slave = bodies_[link.slave];
-    const int count = link.count;
-    link.forces.noalias() = slave.inertia * link.columns;
-    ReleasedSquare own = link.columns.transpose() * link.forces;
-    for (int k = 0; k < count; ++k) own(k, k) += armatures[link.first + k];
-    invert(own, link.inverse);
-    link.lack = Eigen::Map<const ReleasedVector>(efforts + link.first, count);
-    link.lack.noalias() -= link.columns.transpose() * slave.bias;
-    if (link.master >= 0) pass_on(link);
-  }
-  for (const Link& link : links_) {
-    Vector6 change = link.drift;
-    if (link.master >= 0) {
-      const Vector6& of_master = bodies_[link.master].acceleration;
-      change.head<3>() += of_master.head<3>() - link.way.cross(of_master.tail<3>());
-      change.tail<3>() += of_master.tail<3>();
-    }
-    const ReleasedVector rates = link.inverse * (link.lack - link.forces.transpose() * change);
-    std::copy_n(rates.data(), link.count, rates_change + link.first);
-    bodies_[link.slave].acceleration = change + link.columns * rates;
-  }
+  simd::run([&] {
+    for (std::size_t j = links_.size(); j-- > 0;) pass_on(links_[j], efforts, armatures);
+    for (const Link& link : links_) follow(link, rates_change);
+  });
 }
 
 /// Adds to the master what it feels of the slave: its articulated inertia without the joint's motions, and its bias.
-void ArticulatedBodies::pass_on(const Link& link) {
+void ArticulatedBodies::pass_on(Link& link, const double* efforts, const double* armatures) {
   const Body& slave = bodies_[link.slave];
-  Body& master = bodies_[link.master];
   Matrix6 inertia = slave.inertia;
-  Vector6 bias = slave.bias + inertia * link.drift;
-  if (link.count > 0) {
-    const ReleasedColumns held = link.forces * link.inverse;
-    inertia.noalias() -= held * link.forces.transpose();
-    bias += held * (link.lack - link.forces.transpose() * link.drift);
-  }
+  Vector6 bias = slave.bias;
+  with_count(link.count, [&](auto constant) {
+    constexpr int kCount = constant;
+    const Eigen::Matrix<double, 6, kCount> columns = link.columns.template leftCols<kCount>(),
+                                           forces = inertia * columns;
+    Eigen::Matrix<double, kCount, kCount> own = columns.transpose() * forces;
+    own.diagonal() += Eigen::Map<const Eigen::Matrix<double, kCount, 1>>(armatures + link.first);
+    const Eigen::Matrix<double, kCount, kCount> inverse = flexarm::inverse<kCount>(own);
+    const Eigen::Matrix<double, kCount, 1> lack =
+        Eigen::Map<const Eigen::Matrix<double, kCount, 1>>(efforts + link.first) - columns.transpose() * bias;
+    const Eigen::Matrix<double, 6, kCount> held = forces * inverse;
+    inertia -= held * forces.transpose();
+    bias += held * lack;
+    link.held.template leftCols<kCount>() = held;
+    link.change.template head<kCount>() = inverse * lack;
+  });
+  if (link.master < 0) return;
+  bias += inertia * link.drift;
+  Body& master = bodies_[link.master];
   const Matrix3 way = so3::hat(link.way);
   const Matrix3 linear = inertia.topLeftCorner<3, 3>(), mixed = inertia.topRightCorner<3, 3>();
   const Matrix3 moved = mixed - linear * way;
@@ -165,6 +167,24 @@ void ArticulatedBodies::pass_on(const Link& link) {
   master.inertia.bottomRightCorner<3, 3>() += inertia.bottomRightCorner<3, 3>() + way * moved - mixed.transpose() * way;
   master.bias.head<3>() += bias.head<3>();
   master.bias.tail<3>() += bias.tail<3>() + link.way.cross(Vector3(bias.head<3>()));
+}
+
+/// Finds the accelerations of a joint and its slave from that of the master.
+void ArticulatedBodies::follow(const Link& link, double* rates_change) {
+  Vector6& change = bodies_[link.slave].acceleration;
+  change = link.drift;
+  if (link.master >= 0) {
+    const Vector6& of_master = bodies_[link.master].acceleration;
+    change.head<3>() += of_master.head<3>() - link.way.cross(of_master.tail<3>());
+    change.tail<3>() += of_master.tail<3>();
+  }
+  with_count(link.count, [&](auto constant) {
+    constexpr int kCount = constant;
+    const Eigen::Matrix<double, kCount, 1> rates =
+        link.change.template head<kCount>() - link.held.template leftCols<kCount>().transpose() * change;
+    Eigen::Map<Eigen::Matrix<double, kCount, 1>>(rates_change + link.first) = rates;
+    change += link.columns.template leftCols<kCount>() * rates;
+  });
 }
 
 }  // namespace flexarm

@@ -49,15 +49,15 @@ class ArticulatedBodies {
     Matrix3 frame, slave_frame;              // of the joint in its master, of the slave in the moved joint
     const CamProfile* profile;
     // at an instant
-    Vector3 way;              // from master to slave
-    ReleasedColumns columns;  // of the slave's velocity by the rates
-    Vector6 drift;            // the slave's acceleration without those of the master and the rates
-    ReleasedColumns forces;   // inertia * columns
-    ReleasedSquare inverse;
-    ReleasedVector lack;  // what the efforts exceed the bias
+    Vector3 way;      // from master to slave
+    Matrix6 columns;  // of the slave's velocity by the rates: the first `count`
+    Vector6 drift;    // the slave's acceleration without those of the master and the rates
+    Matrix6 held;     // inertia * columns * (columns^T inertia columns + armatures)^-1
+    Vector6 change;   // of the rates, if the slave were not accelerated
   };
   void move(Link& link, const Released& released, const double* rates);
-  void pass_on(const Link& link);
+  void pass_on(Link& link, const double* efforts, const double* armatures);
+  void follow(const Link& link, double* rates_change);
 
   std::vector<Body> bodies_;  // per node
   std::vector<Link> links_;   // per joint, from the root to the leaves

@@ -129,6 +129,7 @@ TEST(ArticulatedBodies, AreInBalance) {
                         armatures = numbers(count, random).cwiseAbs();
   const Vector6 force = random.vector6();
   Eigen::VectorXd changes(count);
+  bodies.set(somewhere(model, random), efforts.data());  // nothing of it may stay
   bodies.set(released, rates.data());
   bodies.add_force(2, force);
   bodies.accelerate(efforts.data(), armatures.data(), changes.data());
