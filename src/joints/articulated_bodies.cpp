@@ -14,12 +14,6 @@
 namespace flexarm {
 namespace {
 
-/// The rotation by an angle about a unit vector.
-Matrix3 turned(const Vector3& axis, double angle) {
-  const double s = std::sin(angle), c = std::cos(angle);
-  return c * Matrix3::Identity() + (1 - c) * axis * axis.transpose() + s * so3::hat(axis);
-}
-
 /// Calls work(N) with the number of a joint's rates as a constant.
 template <class Work>
 void with_count(int count, const Work& work) {
@@ -44,6 +38,8 @@ Eigen::Matrix<double, Count, Count> inverse(const Eigen::Matrix<double, Count, C
 }  // namespace
 
 ArticulatedBodies::ArticulatedBodies(const Model& model) : bodies_(model.nodes.size()), gravity_(model.gravity) {
+  world_.rotation.setIdentity();
+  world_.position.setZero(), world_.velocity.setZero();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].mass = model.inertias[i].mass;
     bodies_[i].rotary = model.inertias[i].rotary;
@@ -58,8 +54,11 @@ ArticulatedBodies::ArticulatedBodies(const Model& model) : bodies_(model.nodes.s
     link.origin = joint.origin.position, link.frame = joint.origin.orientation.toRotationMatrix();
     link.translation = joint.translation, link.arm = joint.arm;
     link.turn = joint.rotation.norm();
-    link.axis = link.turn > 0 ? Vector3(joint.rotation / link.turn) : Vector3::Zero();
+    link.rotation = joint.rotation;
     link.slave_frame = joint.slave_orientation.toRotationMatrix();
+    const Matrix3 axis = so3::hat(link.turn > 0 ? Vector3(joint.rotation / link.turn) : Vector3::Zero());
+    link.turned_once = axis * link.slave_frame, link.turned_twice = axis * link.turned_once;
+    link.travels = !joint.translation.isZero(0);
     link.profile = joint.profile.get();
     link.columns.setZero();
   }
@@ -71,57 +70,72 @@ void ArticulatedBodies::set(const std::vector<Released>& released, const double*
   });
 }
 
+/// The motion of a joint with one coordinate, world axes.
+void ArticulatedBodies::move_scalar(Link& link, double u, double rate, const Matrix3& master, Motion& out) {
+  Vector3 axis = Vector3::Zero(), travel = Vector3::Zero();
+  out.to_joint = master * link.origin;
+  if (link.turn != 0) {
+    axis = master * link.rotation;
+    const double angle = link.turn * u;
+    out.rotation.noalias() =
+        master * (link.slave_frame + std::sin(angle) * link.turned_once + (1 - std::cos(angle)) * link.turned_twice);
+    out.turning = rate * axis;
+  } else {
+    out.rotation.noalias() = master * link.slave_frame;
+    out.turning.setZero();
+  }
+  out.sliding.setZero(), out.bend.setZero();
+  if (link.travels) {
+    const CamProfile* profile = link.profile;
+    travel = master * link.translation;
+    out.to_joint += (profile ? profile->value(u) : u) * travel;
+    if (profile) {
+      out.bend = profile->second_derivative(u) * rate * rate * travel;
+      travel *= profile->derivative(u);
+    }
+    out.sliding = rate * travel;
+  }
+  out.arm = out.rotation * link.arm;
+  link.columns.col(0) << travel + axis.cross(out.arm), axis;
+}
+
+/// The motion of a joint with none or several coordinates, world axes.
+void ArticulatedBodies::move_frame(Link& link, const Released& released, const double* rates, const Matrix3& master,
+                                   Motion& out) {
+  const Matrix3 frame = master * link.frame;
+  out.to_joint = master * link.origin;
+  out.sliding.setZero(), out.turning.setZero(), out.bend.setZero();
+  const bool turns = link.count >= 3;
+  out.rotation = frame * (turns ? Matrix3(released.rotation.toRotationMatrix() * link.slave_frame) : link.slave_frame);
+  out.arm = out.rotation * link.arm;
+  if (link.count == 6) {
+    out.to_joint += frame * released.displacement;
+    out.sliding = frame * Eigen::Map<const Vector3>(rates);
+    link.columns.leftCols<3>() << frame, Matrix3::Zero();
+  }
+  if (!turns) return;
+  out.turning = frame * Eigen::Map<const Vector3>(rates + link.count - 3);
+  link.columns.middleCols<3>(link.count - 3) << -so3::hat(out.arm) * frame, frame;
+}
+
 /// Places the slave of a joint, and sets what depends on configuration and rates alone.
 void ArticulatedBodies::move(Link& link, const Released& released, const double* rates) {
-  static const Body world = [] {
-    Body body;
-    body.rotation.setIdentity();
-    body.position.setZero(), body.velocity.setZero();
-    return body;
-  }();
-  const Body& master = link.master < 0 ? world : bodies_[link.master];
+  const Body& master = link.master < 0 ? world_ : bodies_[link.master];
   Body& slave = bodies_[link.slave];
-  const Vector3 spin = master.velocity.tail<3>();
-  Vector3 from = link.origin, sliding = Vector3::Zero(), turning = Vector3::Zero(), bend = Vector3::Zero();
-  Matrix3 turn = link.frame;  // of the moved joint frame in the master
-  if (link.kind == JointMapKind::Scalar) {
-    const double u = released.displacement[0], rate = rates[0];
-    const double way = link.profile ? link.profile->value(u) : u,
-                 slope = link.profile ? link.profile->derivative(u) : 1;
-    from += way * link.translation;
-    sliding = slope * rate * link.translation;
-    if (link.profile) bend = link.profile->second_derivative(u) * rate * rate * link.translation;
-    turning = rate * link.turn * link.axis;
-    if (link.turn != 0) turn = turned(link.axis, link.turn * u);  // such joints have the frame of the master
-    link.columns.col(0) << slope * link.translation, link.turn * link.axis;
-  } else if (link.kind == JointMapKind::Free || link.kind == JointMapKind::Spherical) {
-    const bool is_free = link.kind == JointMapKind::Free;
-    if (is_free) {
-      from += link.frame * released.displacement;
-      sliding = link.frame * Eigen::Map<const Vector3>(rates);
-      link.columns.leftCols<3>() << link.frame, Matrix3::Zero();
-    }
-    turning = link.frame * Eigen::Map<const Vector3>(rates + (is_free ? 3 : 0));
-    link.columns.middleCols<3>(link.count - 3) << Matrix3::Zero(), link.frame;
-    turn = link.frame * released.rotation.toRotationMatrix();
-  }
-  // All of this to world axes.
-  const Matrix3& of_master = master.rotation;
-  slave.rotation.noalias() = of_master * (turn * link.slave_frame);
-  const Vector3 arm = slave.rotation * link.arm, to_joint = of_master * from;
+  Motion motion;
+  if (link.kind == JointMapKind::Scalar)
+    move_scalar(link, released.displacement[0], rates[0], master.rotation, motion);
+  else
+    move_frame(link, released, rates, master.rotation, motion);
+  const auto& [rotation, to_joint, arm, sliding, turning, bend] = motion;
+  slave.rotation = rotation;
   link.way = to_joint + arm;
   slave.position = master.position + link.way;
-  sliding = of_master * sliding, turning = of_master * turning;
-  const Vector3 slave_spin = spin + turning, spin_drift = spin.cross(turning);
-  slave.velocity << master.velocity.head<3>() + spin.cross(to_joint) + sliding + slave_spin.cross(arm), slave_spin;
-  link.drift << spin.cross(spin.cross(to_joint) + 2 * sliding) + of_master * bend +
-                    slave_spin.cross(slave_spin.cross(arm)) + spin_drift.cross(arm),
-      spin_drift;
-  for (int k = 0; k < link.count; ++k) {
-    const Vector3 axis = of_master * link.columns.col(k).tail<3>();
-    link.columns.col(k) << of_master * link.columns.col(k).head<3>() + axis.cross(arm), axis;
-  }
-  const Matrix3 rotary = slave.rotation * slave.rotary * slave.rotation.transpose();
+  const Vector3 spin = master.velocity.tail<3>(), slave_spin = spin + turning, spin_drift = spin.cross(turning);
+  const Vector3 carried = spin.cross(to_joint), swung = slave_spin.cross(arm);
+  slave.velocity << master.velocity.head<3>() + carried + sliding + swung, slave_spin;
+  link.drift << spin.cross(carried + 2 * sliding) + bend + slave_spin.cross(swung) + spin_drift.cross(arm), spin_drift;
+  const Matrix3 rotary = rotation * slave.rotary * rotation.transpose();
   slave.inertia.setZero();
   slave.inertia.diagonal().head<3>().setConstant(slave.mass);
   slave.inertia.bottomRightCorner<3, 3>() = rotary;

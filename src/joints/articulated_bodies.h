@@ -44,9 +44,11 @@ class ArticulatedBodies {
   struct Link {
     JointMapKind kind;
     int master, slave, first, count;
-    Vector3 origin, translation, axis, arm;  // as in JointMap; axis: a unit vector, or zero
-    double turn;                             // angle per unit of a scalar coordinate
-    Matrix3 frame, slave_frame;              // of the joint in its master, of the slave in the moved joint
+    Vector3 origin, translation, rotation, arm;  // as in JointMap
+    double turn;                                 // angle per unit of a scalar coordinate
+    bool travels;                                // whether the translation is not zero
+    Matrix3 frame, slave_frame;                  // of the joint in its master, of the slave in the moved joint
+    Matrix3 turned_once, turned_twice;           // slave_frame, multiplied by hat(axis) once and twice
     const CamProfile* profile;
     // at an instant
     Vector3 way;      // from master to slave
@@ -55,10 +57,20 @@ class ArticulatedBodies {
     Matrix6 held;     // inertia * columns * (columns^T inertia columns + armatures)^-1
     Vector6 change;   // of the rates, if the slave were not accelerated
   };
+  /// What a joint does at an instant, world axes: the slave's rotation, the ways from the master to the moved joint
+  /// frame and from there to the slave, and the joint's own velocity, angular velocity, and acceleration at constant
+  /// rates.
+  struct Motion {
+    Matrix3 rotation;
+    Vector3 to_joint, arm, sliding, turning, bend;
+  };
   void move(Link& link, const Released& released, const double* rates);
+  static void move_scalar(Link& link, double u, double rate, const Matrix3& master, Motion& out);
+  static void move_frame(Link& link, const Released& released, const double* rates, const Matrix3& master, Motion& out);
   void pass_on(Link& link, const double* efforts, const double* armatures);
   void follow(const Link& link, double* rates_change);
 
+  Body world_;
   std::vector<Body> bodies_;  // per node
   std::vector<Link> links_;   // per joint, from the root to the leaves
   Vector3 gravity_;
