@@ -68,7 +68,7 @@ struct RealTimeScene {
 
 std::vector<SpeedProblem> speed_problems();
 std::vector<SpeedTarget> speed_targets();
-PeerTarget peer_target();
+std::vector<PeerTarget> peer_targets();
 std::vector<RealTimeScene> real_time_scenes();
 /// Fewer and shorter runs, to test the command rather than to measure.
 SpeedProblem shortened(SpeedProblem problem);

@@ -146,12 +146,13 @@ SpeedProblem six_joint_arm() {
                  "tip",
                  1,
                  0.02,
-                 {"em4", 0, 0, 0.02 / 80},
+                 {"dop853", 0, 0, 0.02 / 16},
                  {}};
   const std::vector<int> parts = {1, 2, 4, 5, 10, 20, 40};
   add_em(p, {{0, 0}}, parts);
   add_product(p, {"em4"}, {{0, 0}}, parts, {kTight, kLoose, kLoosest, kRough});
   add_product(p, {"newmark"}, {{0, 0}}, parts, {kTight, kLoose, kLoosest});
+  add_product(p, {"rk4", "dop853"}, {{0, 0}}, {1, 2, 3, 4, 5, 8, 10, 20}, {kTight});
   p.note = "Nothing bends: only the step errs. Other programs read the same file.";
   return p;
 }
@@ -172,8 +173,8 @@ std::vector<SpeedTarget> speed_targets() {
           {"flying_spaghetti", 1e-3, 0.096, 0.011, 0.005, unknown}};
 }
 
-PeerTarget peer_target() {
-  return {"six_joint_arm", "RK4", 1e-3, 2};
+std::vector<PeerTarget> peer_targets() {
+  return {{"six_joint_arm", "RK4", 1e-3, 0.5}, {"six_joint_arm", "RK4", 1e-6, 0.5}};
 }
 
 std::vector<RealTimeScene> real_time_scenes() {

@@ -179,8 +179,7 @@ std::string real_time_row(const RealTimeOutcome& outcome) {
                           static_cast<double>(outcome.run.iterations) / steps)});
 }
 
-std::string peer_target_row(const SpeedMeasurement& m) {
-  const PeerTarget target = peer_target();
+std::string peer_target_row(const SpeedMeasurement& m, const PeerTarget& target) {
   const SpeedOutcome* best = m.fastest(target.error);
   const PeerOutcome* peer = m.fastest_peer(target.error, target.variant);
   std::vector<std::string> cells = {
@@ -211,8 +210,9 @@ std::string target_table(const SpeedReport& report) {
                  fmt::format("{:.2g}", ratio), verdict(ratio)});
   }
   for (const RealTimeOutcome& outcome : report.real_time) text += real_time_row(outcome);
-  for (const SpeedMeasurement& m : report.measurements)
-    if (m.problem.name == peer_target().problem) text += peer_target_row(m);
+  for (const PeerTarget& target : peer_targets())
+    for (const SpeedMeasurement& m : report.measurements)
+      if (m.problem.name == target.problem) text += peer_target_row(m, target);
   return text;
 }
 

@@ -21,8 +21,8 @@ namespace {
 constexpr double kLargestRotation = 0.5;
 /// Strain above which there is a warning. Materials of arms fail, and their linear law ceases to hold, far below it.
 constexpr double kLargestStrain = 0.1;
-/// Largest defect of the energy account of a conserving scheme, relative to the largest energy. It is far above the
-/// error that the tolerance of Newton's method leaves.
+/// Largest defect of the energy account of a conserving or explicit scheme, relative to the largest energy. It is far
+/// above the error that the tolerance of Newton's method leaves.
 constexpr double kLargestEnergyDefect = 1e-3;
 /// Displacements in a step that count as rest, relative to the mechanism's length.
 constexpr double kRest = 1e-8;
@@ -38,6 +38,7 @@ double energy_of_rest(const Simulation& simulation) {
 
 RunSummary::RunSummary(const Simulation& simulation)
     : conserves_energy_(scheme_of(simulation).conserves_energy),
+      is_explicit_(scheme_of(simulation).tableau != nullptr),
       start_(simulation.energies()),
       energy_scale_(energy_of_rest(simulation)) {
   look(simulation);
@@ -85,11 +86,13 @@ std::string RunSummary::strain_warning(const Simulation& simulation) const {
 }
 
 std::string RunSummary::energy_warning() const {
-  if (!conserves_energy_ || energy_.amount <= kLargestEnergyDefect * energy_scale_) return "";
+  const bool keeps_account = conserves_energy_ || is_explicit_;
+  if (!keeps_account || energy_.amount <= kLargestEnergyDefect * energy_scale_) return "";
   return fmt::format(
-      "energy - work + dissipation changed by up to {:.2g} J at t = {:.6g} s, {:.2g} % of the largest energy, with a "
-      "scheme that conserves it: a smaller tolerance or step helps",
-      energy_.amount, energy_.time, 100 * energy_.amount / energy_scale_);
+      "energy - work + dissipation changed by up to {:.2g} J at t = {:.6g} s, {:.2g} % of the largest energy, {}",
+      energy_.amount, energy_.time, 100 * energy_.amount / energy_scale_,
+      is_explicit_ ? "by errors of the explicit scheme: a smaller step helps, or the scheme em"
+                   : "with a scheme that conserves it: a smaller tolerance or step helps");
 }
 
 std::vector<std::string> RunSummary::warnings(const Simulation& simulation) const {

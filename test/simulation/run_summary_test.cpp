@@ -48,6 +48,21 @@ TEST(RunSummary, RotationThatLagsIsNamed) {
   EXPECT_NE(warnings[0].find("are 7.3 % too slow"), std::string::npos) << "1 - 2 atan(1/2), in: " << warnings[0];
 }
 
+// Friction is stiff: with long steps of an explicit scheme the motion gains energy.
+TEST(RunSummary, StepsOfAnExplicitSchemeThatAreTooLongAreNamed) {
+  SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1}).friction = 5;
+  b.scene.initial_joints.push_back({"shaft", 0, 0.01, {}});
+  b.scene.integrator.step = 0.01;
+  b.scene.integrator.scheme = "rk4";
+  b.scene.gravity.setZero();
+  Simulation simulation(b.scene);
+  const std::vector<std::string> warnings = warnings_after(simulation, 20);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("by errors of the explicit scheme"), std::string::npos) << warnings[0];
+}
+
 TEST(RunSummary, LargeStrainIsNamed) {
   SceneBuilder b;
   b.beam("rope", {{1, 0, 0}}, section(10, 5, 1, 1, 1, 0.02, 0.01), 4, 2);

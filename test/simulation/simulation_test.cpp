@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/schemes/integrator_description.h"
 #include "math/pi.h"
+#include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 
@@ -80,9 +80,9 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
 // The secant over a step differs from the mean of the velocities at both ends by at most the changes between the last
 // secants. These changes are small against the velocity itself.
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
-  for (const std::string_view name : scheme_names()) {
+  for (const Scheme& scheme : schemes()) {
     SimulationOptions options;
-    options.scheme = std::string(name);
+    options.scheme = std::string(scheme.name);
     options.step = 1e-4;
     for (const std::size_t probe : {0, 1}) {
       Simulation s(scene_, options);
@@ -98,9 +98,9 @@ TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
         const double changes = (secants[n] - secants[n - 1]).norm() + (secants[n - 1] - secants[n - 2]).norm() +
                                (secants[n - 2] - secants[n - 3]).norm();
         const Vector3 mean = 0.5 * (states[n].velocity + states[n + 1].velocity);
-        EXPECT_LT((secants[n] - mean).norm(), changes) << name << ", probe " << probe;
+        EXPECT_LT((secants[n] - mean).norm(), changes) << scheme.name << ", probe " << probe;
         if (n > 20) {
-          EXPECT_LT(changes, 0.2 * secants[n].norm()) << name << ", probe " << probe;
+          EXPECT_LT(changes, 0.2 * secants[n].norm()) << scheme.name << ", probe " << probe;
         }
       }
     }

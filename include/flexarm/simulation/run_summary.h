@@ -39,7 +39,7 @@ class RunSummary {
   std::string energy_warning() const;
 
   StepCounts counts_;
-  bool conserves_energy_;
+  bool conserves_energy_, is_explicit_;
   Energies start_;
   double energy_scale_ = 0;  // largest energy of the motion so far [J]
   Largest rotation_, strain_, energy_;
