@@ -243,12 +243,10 @@ void ExplicitStep::write(State& state, double time) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const int node = model_.joints[j].slave;
     state.released[j] = released_[j];
-    poses_[node] = slave_pose(model_, static_cast<int>(j), poses_, released_[j]);
     NodeState& to = state.nodes[node];
-    const Quaternion orientation = so3::nearer_of_two(poses_[node].orientation, to.orientation);
-    to.position = poses_[node].position;
-    to.orientation = orientation;
-    const Matrix3 to_node = poses_[node].rotation.transpose();
+    to.position = bodies_.position(node);
+    to.orientation = so3::nearer_of_two(Quaternion(bodies_.rotation(node)).normalized(), to.orientation);
+    const Matrix3 to_node = bodies_.rotation(node).transpose();
     to.velocity = bodies_.velocity(node).head<3>();
     to.angular_velocity = to_node * bodies_.velocity(node).tail<3>();
     to.mean_spin = bodies_.velocity(node).tail<3>();

@@ -29,6 +29,16 @@ void with_count(int count, const Work& work) {
   }
 }
 
+/// matrix hat(v), without the products with zeros.
+template <class Matrix>
+Matrix3 times_hat(const Matrix& matrix, const Vector3& v) {
+  Matrix3 out;
+  out.col(0) = v[2] * matrix.col(1) - v[1] * matrix.col(2);
+  out.col(1) = v[0] * matrix.col(2) - v[2] * matrix.col(0);
+  out.col(2) = v[1] * matrix.col(0) - v[0] * matrix.col(1);
+  return out;
+}
+
 template <int Count>
 Eigen::Matrix<double, Count, Count> inverse(const Eigen::Matrix<double, Count, Count>& matrix) {
   if constexpr (Count < 4) return matrix.inverse();
@@ -172,13 +182,15 @@ void ArticulatedBodies::pass_on(Link& link, const double* efforts, const double*
   if (link.master < 0) return;
   bias += inertia * link.drift;
   Body& master = bodies_[link.master];
-  const Matrix3 way = so3::hat(link.way);
   const Matrix3 linear = inertia.topLeftCorner<3, 3>(), mixed = inertia.topRightCorner<3, 3>();
-  const Matrix3 moved = mixed - linear * way;
+  const Matrix3 moved = mixed - times_hat(linear, link.way);
   master.inertia.topLeftCorner<3, 3>() += linear;
   master.inertia.topRightCorner<3, 3>() += moved;
   master.inertia.bottomLeftCorner<3, 3>() += moved.transpose();
-  master.inertia.bottomRightCorner<3, 3>() += inertia.bottomRightCorner<3, 3>() + way * moved - mixed.transpose() * way;
+  // hat(way) moved = -(moved^T hat(way))^T
+  master.inertia.bottomRightCorner<3, 3>() += inertia.bottomRightCorner<3, 3>() -
+                                              times_hat(moved.transpose(), link.way).transpose() -
+                                              times_hat(mixed.transpose(), link.way);
   master.bias.head<3>() += bias.head<3>();
   master.bias.tail<3>() += bias.tail<3>() + link.way.cross(Vector3(bias.head<3>()));
 }
