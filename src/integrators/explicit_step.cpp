@@ -207,8 +207,8 @@ void ExplicitStep::add_load(const NodalLoad& load, double scale, std::vector<dou
 
 // ---------------------------------------------------------------- the step
 
-bool ExplicitStep::advance(State& state, double step) {
-  const bool goes_on = is_as_left(state);
+bool ExplicitStep::advance(State& state, double step, bool reuses) {
+  const bool goes_on = reuses && is_as_left(state);
   if (goes_on)
     begin_ = stage_;
   else

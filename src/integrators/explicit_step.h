@@ -20,7 +20,9 @@ class ExplicitStep {
   ExplicitStep(const Model& model, const Scheme& scheme);
 
   /// Advances the state by a step [s]. Returns false, and leaves the state as it was, if numbers are no longer finite.
-  bool advance(State& state, double step);
+  /// `reuses`: a step may begin with what the last one knew at its end. If not, a run that continues from a restored
+  /// state is the same bit for bit.
+  bool advance(State& state, double step, bool reuses);
 
  private:
   struct Joint {

@@ -77,7 +77,7 @@ void Stepper::observe(StepObserver* observer) {
 
 bool Stepper::explicit_step(State& state, double step, StepResult& result) {
   ++result.iterations;
-  if (explicit_->advance(state, step)) return true;
+  if (explicit_->advance(state, step, settings_.reuse_factorisation)) return true;
   result.reason = StepResult::Reason::NotFinite;
   result.failure.time = state.time;
   result.failure.step = step;

@@ -119,6 +119,57 @@ TEST_P(ExplicitSchemes, KeepTheAccount) {
   EXPECT_NEAR(s.energies().work, reference.energies().work, 1e-5);
 }
 
+TEST_P(ExplicitSchemes, GoOnFromARestoredStateBitByBit) {
+  const std::string text =
+      "<robot name=\"arm\"><link name=\"world\"/>" + link("upper", "0.3 0 0") + link("fore", "0.2 0.1 0") + R"xml(
+    <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/> <axis xyz="0 0.6 0.8"/></joint>
+    <joint name="ball" type="spherical"><parent link="upper"/><child link="fore"/> <origin xyz="0.6 0 0"/></joint>
+    <simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)xml";
+  const scene::ReadResult read = scene::read_scene_text(text, "explicit.urdf");
+  ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
+  SimulationOptions options;
+  options.scheme = GetParam().name;
+  options.reuse_factorisation = false;
+  Simulation s(*read.scene, options);
+  for (int n = 0; n < 7; ++n) ASSERT_TRUE(s.step().converged);
+  const Snapshot middle = s.snapshot();
+  for (int n = 0; n < 9; ++n) ASSERT_TRUE(s.step().converged);
+  const Pose end = s.link_pose(2);
+  s.restore(middle);
+  for (int n = 0; n < 9; ++n) ASSERT_TRUE(s.step().converged);
+  EXPECT_EQ(s.link_pose(2).position, end.position);
+  EXPECT_EQ(s.link_pose(2).orientation.coeffs(), end.orientation.coeffs());
+}
+
+// A scene with something that explicit schemes do not have is refused by name.
+TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
+  const auto refusal = [&](const std::string& parts, const std::string& options = "") {
+    try {
+      simulation_of("<robot name=\"arm\"><link name=\"world\"/>" + link("arm", "0.3 0 0") + parts + "<simulation>" +
+                        options + "</simulation></robot>",
+                    GetParam().name, 1e-3);
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string hinge = R"(<joint name="hinge" type="continuous"><parent link="world"/><child link="arm"/>)",
+                    end = "</joint>";
+  EXPECT_EQ(refusal(hinge + end), "accepted");
+  const std::string refused = std::string("scheme '") + GetParam().name + "' has no ";
+  const auto expect_no = [&](const std::string& what, const std::string& text) {
+    EXPECT_NE(text.find(refused + what), std::string::npos) << text;
+  };
+  expect_no("prescribed motions", refusal(hinge + end, R"(<motion joint="hinge" position="t"/>)"));
+  expect_no("servos", refusal(hinge + end + R"(<servo joint="hinge" mode="position" kp="4" kd="1" set_point="1"/>)"));
+  expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
+  expect_no("springs, lines or contacts", refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
+      from="world" from_at="1 1 0" to="arm" to_at="0 0 1"/>)"));
+  expect_no("flexible links", refusal(hinge + end + R"(<joint name="glue" type="fixed"><parent link="arm"/>
+      <child link="rod"/></joint><link name="rod"><beam elements="1"><centerline><line to="1 0 0"/></centerline>
+      <section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/></beam></link>)"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, ExplicitSchemes, ::testing::Values(Method{"rk4", 4, 0.05}, Method{"dop853", 8, 0.25}),
                          [](const auto& info) { return info.param.name; });
 
