@@ -43,6 +43,14 @@ const char* obstacle(const Model& model) {
   return nullptr;
 }
 
+/// @throws ModelError naming what explicit schemes cannot simulate, if the model has some of it
+const Model& suitable(const Model& model, const Scheme& scheme) {
+  if (const char* what = obstacle(model))
+    throw ModelError(fmt::format(
+        "<integrator>: scheme '{}' has no {}; take one of the energy-momentum family, such as em", scheme.name, what));
+  return model;
+}
+
 int position_count(JointMapKind kind) {
   switch (kind) {
     case JointMapKind::Scalar:
@@ -59,16 +67,13 @@ int position_count(JointMapKind kind) {
 }  // namespace
 
 ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
-    : model_(model),
+    : model_(suitable(model, scheme)),
       tableau_(*scheme.tableau),
       bodies_(model),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
       applied_(model.coordinates.size()) {
-  if (const char* what = obstacle(model))
-    throw ModelError(fmt::format(
-        "<integrator>: scheme '{}' has no {}; take one of the energy-momentum family, such as em", scheme.name, what));
   for (const JointMap& joint : model.joints) {
     joints_.push_back({static_cast<int>(rates_), bodies_.first_rate(static_cast<int>(joints_.size())), joint.kind});
     rates_ += position_count(joint.kind);
@@ -229,7 +234,10 @@ bool ExplicitStep::advance(State& state, double step, bool reuses) {
     }
     if (s < stages) evaluate(state, state.time + tableau_.times[s] * step, stage_, changes_[s]);
   }
-  if (!std::all_of(stage_.begin(), stage_.end(), [](double number) { return std::isfinite(number); })) return false;
+  if (!std::all_of(stage_.begin(), stage_.end(), [](double number) { return std::isfinite(number); })) {
+    last_nodes_.clear();  // what was known at the end of the last step is lost
+    return false;
+  }
   normalise(stage_);
   const double work = stage_[work_], dissipated = stage_[work_ + 1];
   evaluate(state, state.time + step, stage_, last_change_);

@@ -48,8 +48,10 @@ NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
 
 void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrenches) {
   const auto pulls = [](const NodalLoad& wrench) { return wrench.pull.acts(); };
-  if (scheme.hht != HhtForm::None && std::any_of(wrenches.begin(), wrenches.end(), pulls))
+  if (std::none_of(wrenches.begin(), wrenches.end(), pulls)) return;
+  if (scheme.hht != HhtForm::None)
     throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
+  if (scheme.tableau) throw std::invalid_argument("explicit schemes (rk4, dop853) have no pulls");
 }
 
 // ---------------------------------------------------------------- for displays

@@ -141,6 +141,19 @@ TEST_P(ExplicitSchemes, GoOnFromARestoredStateBitByBit) {
   EXPECT_EQ(s.link_pose(2).orientation.coeffs(), end.orientation.coeffs());
 }
 
+// What a step had computed when it failed is not used by later ones.
+TEST_P(ExplicitSchemes, GoOnAfterAFailure) {
+  const std::string text = "<robot name=\"arm\"><link name=\"world\"/>" + link("arm", "0.3 0 0") + R"xml(
+    <joint name="hinge" type="continuous"><parent link="world"/><child link="arm"/> <axis xyz="0 1 0"/></joint>
+    <simulation><load link="arm" at="1 0 0" force="0 0 1" history="t &lt; 0.55 ? 1 : sqrt(-1)"/></simulation></robot>)xml";
+  Simulation s = simulation_of(text, GetParam().name, 0.1);
+  for (int n = 0; n < 5; ++n) ASSERT_TRUE(s.step().converged);
+  EXPECT_FALSE(s.step().converged);
+  EXPECT_GT(s.time(), 0.54);  // sub-steps went on after the first one had failed
+  EXPECT_LE(s.time(), 0.55);
+  EXPECT_TRUE(std::isfinite(s.energies().total()));
+}
+
 // A scene with something that explicit schemes do not have is refused by name.
 TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
   const auto refusal = [&](const std::string& parts, const std::string& options = "") {
