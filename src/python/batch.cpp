@@ -63,15 +63,15 @@ class GuardedBatch {
     }
     return simulations;
   }
-  std::vector<ResultColumns*> columns(const Patterns& record);
+  /// The columns of each simulation, with the same names.
+  std::vector<ResultColumns*> columns_of_all(const Patterns& record);
 
   std::vector<Pointer> simulations_;
   Batch batch_;
   std::vector<std::optional<std::string>> failures_;  // of the last run
 };
 
-/// The columns of each simulation, with the same names.
-std::vector<ResultColumns*> GuardedBatch::columns(const Patterns& record) {
+std::vector<ResultColumns*> GuardedBatch::columns_of_all(const Patterns& record) {
   std::vector<ResultColumns*> out;
   for (const Pointer& each : simulations_) out.push_back(&each->columns(record));
   const std::vector<ResultColumn>& first = out[0]->columns();
@@ -92,7 +92,7 @@ py::object GuardedBatch::run(long steps, const std::optional<Array>& efforts,
   if (which && which->size() != size())
     throw std::invalid_argument(fmt::format("which: expected {} truth values, got {}", size(), which->size()));
   const EffortRows commands(batch_[0], efforts, joints, steps, size());
-  const std::vector<ResultColumns*> columns = record ? this->columns(*record) : std::vector<ResultColumns*>(size());
+  const std::vector<ResultColumns*> columns = record ? columns_of_all(*record) : std::vector<ResultColumns*>(size());
   const auto width = static_cast<py::ssize_t>(record ? columns[0]->columns().size() : 0), rows = steps / every;
   py::array_t<double> results({static_cast<py::ssize_t>(size()), rows, width});
   double* const numbers = results.mutable_data();
@@ -130,7 +130,7 @@ py::object GuardedBatch::run(long steps, const std::optional<Array>& efforts,
 }
 
 py::array_t<double> GuardedBatch::row(const Patterns& record) {
-  const std::vector<ResultColumns*> columns = this->columns(record);
+  const std::vector<ResultColumns*> columns = columns_of_all(record);
   const std::size_t width = columns[0]->columns().size();
   py::array_t<double> results({size(), width});
   double* const numbers = results.mutable_data();
