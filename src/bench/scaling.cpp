@@ -82,6 +82,27 @@ std::string cantilever(int elements, int order) {
                urdf::gravity(kDown) + urdf::load("beam", tip, {0, 1, 0}));
 }
 
+/// A clamped beam of two-node elements, and a tendon over a point at the end of each. The points lie to and fro across
+/// the beam, so that the tendon turns at each of them, and slips where there is friction: its rest length swings.
+std::string tendon_along_a_beam(int elements, double friction) {
+  const auto point = [](int i) { return Vector3(0.1 * i, i == 0 ? 0 : 0.01 * (i % 3), 0.05); };
+  double length = 0;
+  std::string guides = "<via link=\"world\" at=\"0 0 0.05\"/>";
+  for (int i = 1; i <= elements; ++i) {
+    length += (point(i) - point(i - 1)).norm();
+    const bool rubs = friction > 0 && i < elements;
+    guides += fmt::format("<via link=\"beam\" at=\"{}\"{}/>", urdf::triple(point(i)),
+                          rubs ? fmt::format(" friction=\"{}\"", friction) : "");
+  }
+  const std::string tendon =
+      fmt::format("<tendon name=\"tendon\" ea=\"2e4\" damping=\"5\" rest_length=\"{:.12g}-{:.12g}*(1-cos(3*t))\">",
+                  0.999 * length, 2e-4 * elements);
+  return scene(urdf::joint("clamp", "fixed", "world", "beam") +
+                   urdf::beam("beam", {0.1 * elements, 0, 0}, kSection, elements, "", 1) + tendon + guides +
+                   "</tendon>",
+               urdf::gravity(kDown));
+}
+
 /// A trunk with an element of 1 m between branches; branches of 1 to 10 elements, every second one on a hinge.
 std::string tree(int branches) {
   std::string body = urdf::joint("clamp", "fixed", "world", "trunk") +
@@ -128,7 +149,11 @@ std::vector<ScalingFamily> scaling_families(bool quick) {
            "other one on a hinge; three-node elements.",
            sizes(1000), tree},
           {"rigid chain", "links", "Rigid links hanging on revolute joints, each with a damper, stops and a motor.",
-           sizes(1000), rigid_chain}};
+           sizes(1000), rigid_chain},
+          {"tendon", "points", "A cantilever of two-node elements with an elastic tendon over a point of each.",
+           sizes(1000), [](int n) { return tendon_along_a_beam(n, 0); }},
+          {"tendon with friction", "points", "The same, with friction at all points but the ends.", sizes(1000),
+           [](int n) { return tendon_along_a_beam(n, 0.1); }}};
 }
 
 ScalingPoint measure_scaling_point(const ScalingFamily& family, int size) {

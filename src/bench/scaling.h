@@ -39,8 +39,8 @@ struct ScalingReport {
   bool quick = false;
 };
 
-/// Four families: a cantilever of elements of first and of second order, a tree of short flexible branches, and a chain
-/// of rigid links with revolute joints.
+/// Six families: a cantilever of elements of first and of second order, a tree of short flexible branches, a chain of
+/// rigid links with revolute joints, and a cantilever with a tendon along it, without and with friction.
 std::vector<ScalingFamily> scaling_families(bool quick);
 
 /// @throws std::runtime_error if the scene cannot be read.

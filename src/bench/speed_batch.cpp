@@ -1,5 +1,6 @@
 // Measures how much time a batch of simulations saves.
 #include <chrono>
+#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>

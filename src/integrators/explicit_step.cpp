@@ -153,8 +153,7 @@ void ExplicitStep::evaluate(const State& state, double time, const std::vector<d
   bodies_.set(released_, rates);
   change[work_] = change[work_ + 1] = 0;
   add_loads(state, time, change);
-  for (std::size_t i = 0; i < efforts_.size(); ++i) efforts_[i] = rates[i];  // add_efforts() replaces them
-  add_efforts(state, time, change);
+  find_efforts(state, time, rates, change);
   bodies_.accelerate(efforts_.data(), armatures_.data(), change.data() + rates_);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double* rate = rates + joints_[j].first_rate;
@@ -171,15 +170,15 @@ void ExplicitStep::evaluate(const State& state, double time, const std::vector<d
   }
 }
 
-/// Replaces the rates in `efforts_` by the efforts on them.
-void ExplicitStep::add_efforts(const State& state, double time, std::vector<double>& change) {
+/// Sets the efforts on all rates. Adds their work and what they dissipate to `change`.
+void ExplicitStep::find_efforts(const State& state, double time, const double* rates, std::vector<double>& change) {
   for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
     const Coordinate& coordinate = model_.coordinates[i];
-    double& effort = efforts_[joints_[coordinate.joint].first_rate + coordinate.component];
-    const double rate = effort;
+    const int at = joints_[coordinate.joint].first_rate + coordinate.component;
+    const double rate = rates[at];
     const double of_scene = coordinate.effort < 0 ? 0 : model_.histories[coordinate.effort](time);
     applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
-    effort = applied_[i];
+    double& effort = efforts_[at] = applied_[i];
     change[work_] += applied_[i] * rate;
     const double position = coordinate.is_angle ? 0 : released_[coordinate.joint].displacement[coordinate.component];
     if (resists(coordinate)) {

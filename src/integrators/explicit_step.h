@@ -1,7 +1,6 @@
 #pragma once
 /// Steps of explicit Runge-Kutta methods, for trees of rigid links. (docs/notes/explicit.md)
 
-#include <array>
 #include <vector>
 
 #include "joints/articulated_bodies.h"
@@ -32,7 +31,7 @@ class ExplicitStep {
   void pack(const State& state);
   void unpack(const std::vector<double>& numbers);
   void evaluate(const State& state, double time, const std::vector<double>& numbers, std::vector<double>& change);
-  void add_efforts(const State& state, double time, std::vector<double>& change);
+  void find_efforts(const State& state, double time, const double* rates, std::vector<double>& change);
   void add_loads(const State& state, double time, std::vector<double>& change);
   void add_load(const NodalLoad& load, double scale, std::vector<double>& change);
   void normalise(std::vector<double>& numbers) const;

@@ -167,6 +167,15 @@ void OutputVelocities::set_slaves(const Model& model, const State& state) {
 
 namespace {
 
+/// The acceleration of a point of a rigid link, from that of its node, which explicit schemes know.
+ProbeAcceleration acceleration_by_node(const State& state, const ProbePoint& point) {
+  if (point.attachment.node < 0) return {};
+  const NodeState& node = state.nodes[point.attachment.node];
+  const Vector3 arm = node.orientation * point.attachment.offset.position;
+  const Vector3 spin = node.orientation * node.angular_velocity, change = node.orientation * node.angular_acceleration;
+  return {node.acceleration + change.cross(arm) + spin.cross(spin.cross(arm)), change};
+}
+
 /// How a quantity goes on changing, from its last two rates of change: their mean if the motion is smooth, else the
 /// part in which they agree.
 Vector3 agreed(const Vector3& last, const Vector3& before) {
@@ -260,15 +269,6 @@ void PastMotion::go_back(const MotionView& view, int step, double begin) {
     node.orientation = so3::nearer_of_two(poses_[slave].orientation, node.orientation);
     poses_[slave].orientation = node.orientation;
   }
-}
-
-/// The acceleration of a point of a rigid link, from that of its node, which explicit schemes know.
-static ProbeAcceleration acceleration_by_node(const State& state, const ProbePoint& point) {
-  if (point.attachment.node < 0) return {};
-  const NodeState& node = state.nodes[point.attachment.node];
-  const Vector3 arm = node.orientation * point.attachment.offset.position;
-  const Vector3 spin = node.orientation * node.angular_velocity, change = node.orientation * node.angular_acceleration;
-  return {node.acceleration + change.cross(arm) + spin.cross(spin.cross(arm)), change};
 }
 
 ProbeAcceleration PastMotion::acceleration(const MotionView& view, const ProbePoint& point) const {

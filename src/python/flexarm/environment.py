@@ -139,8 +139,6 @@ class VectorEnvironment(VectorEnv):
                  threads: typing.Optional[int] = None, **options: typing.Any) -> None:
         if num_envs < 1:
             raise ValueError("num_envs: expected a number >= 1, got %s" % num_envs)
-        if threads is not None and threads < 1:
-            raise ValueError("threads: expected a number >= 1, got %s" % threads)
         if not isinstance(simulation, Simulation):
             simulation = Simulation(simulation)
         self.environments = [Environment(simulation, reward, *arguments, **options) for _ in range(num_envs)]
