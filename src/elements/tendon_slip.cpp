@@ -7,6 +7,7 @@
 namespace flexarm {
 namespace {
 
+/// With many guides the iteration may go round for ever; then SlipChain finds the slips.
 constexpr int kMostIterations = 30;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -104,7 +105,7 @@ bool TendonSlip::iterate() {
     update_ = -slips_;
     for (int i = 0; i < slips_.size(); ++i)
       if (ways_[i] != 0) update_[i] = row(i).slips ? -excess(i, ways_[i]) / excess_slope(i, ways_[i]) : 0;
-    substitute(update_);
+    find_slopes(update_);
     if (!update_.allFinite()) return false;
     for (int i = 0; i < slips_.size(); ++i) slips_[i] = ways_[i] == 0 ? 0 : slips_[i] + update_[i];
     evaluate();
@@ -125,11 +126,9 @@ SlipRow TendonSlip::row(int guide) const {
   return out;
 }
 
-/// Solves the conditions of all guides for their slips: a tridiagonal system. A part's rest length gains what slips
-/// over the guide before it, and loses what slips over that behind it, so that each row's other entries add up to minus
-/// the diagonal. Pivots need no search then.
-template <class Rows>
-void TendonSlip::substitute(Rows& rows) {
+/// The system is tridiagonal. A part's rest length gains what slips over the guide before it, and loses what slips over
+/// that behind it, so that each row's other entries add up to minus the diagonal. Pivots need no search then.
+void TendonSlip::find_slopes(Eigen::Ref<Eigen::MatrixXd> rows) {
   const Eigen::Index count = rows.rows();
   pivots_.setOnes(count);
   for (Eigen::Index i = 1; i < count; ++i) {
@@ -143,10 +142,6 @@ void TendonSlip::substitute(Rows& rows) {
     if (i + 1 < count) rows.row(i) += row(static_cast<int>(i)).by_rest[1] * rows.row(i + 1);
     rows.row(i) /= pivots_[i];
   }
-}
-
-void TendonSlip::find_slopes(Eigen::MatrixXd& rows) {
-  substitute(rows);
 }
 
 bool TendonSlip::solve(const TendonLaw& law, const std::vector<TendonPartStep>& parts,

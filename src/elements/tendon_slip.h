@@ -64,9 +64,9 @@ class TendonSlip {
   double gain(int part) const { return (part > 0 ? slips_[part - 1] : 0) - (part < slips_.size() ? slips_[part] : 0); }
   /// The condition of a guide, for solve()'s last result.
   SlipRow row(int guide) const;
-  /// Finds changes of the slips. `rows`: per guide minus the changes of its condition without slips, as many as wanted;
-  /// replaced by the changes of the slip.
-  void find_slopes(Eigen::MatrixXd& rows);
+  /// Solves the conditions of all guides for the changes of their slips. `rows`: per guide, what its condition lacks if
+  /// no slip changes, for any number of cases side by side; replaced by the change of the slip.
+  void find_slopes(Eigen::Ref<Eigen::MatrixXd> rows);
 
  private:
   void evaluate();
@@ -77,8 +77,6 @@ class TendonSlip {
   bool follow();
   bool find_slips();
   bool choose_ways();
-  template <class Rows>
-  void substitute(Rows& rows);
 
   const TendonLaw* law_ = nullptr;                      // during solve()
   const std::vector<TendonPartStep>* parts_ = nullptr;  // during solve()

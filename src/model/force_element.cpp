@@ -33,8 +33,8 @@ Eigen::MatrixXd PieceTangent::sum(const ForcePieces& pieces, std::size_t nodes) 
   for (std::size_t p = 0; p < pieces.pairs.size(); ++p)
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
-        if (const auto [a, b] = pieces.pairs[p]; (i == 0 ? a : b) >= 0 && (j == 0 ? a : b) >= 0)
-          out.block<6, 6>(6 * (i == 0 ? a : b), 6 * (j == 0 ? a : b)) +=
+        if (pieces.pairs[p][i] >= 0 && pieces.pairs[p][j] >= 0)
+          out.block<6, 6>(6 * pieces.pairs[p][i], 6 * pieces.pairs[p][j]) +=
               blocks.block<6, 6>(6 * i, static_cast<Eigen::Index>(12 * p) + 6 * j);
   if (pieces.rank == 0) return out;
   const Eigen::Index rank = pieces.rank, groups = static_cast<Eigen::Index>(pieces.groups.size()), all = rank * groups;

@@ -75,8 +75,9 @@ struct ForcePieces {
   std::size_t group_nodes() const;
 };
 
-/// A tangent that consists of pieces. It is the sum of their blocks, and of left t(x), with the auxiliary variables t
-/// of all groups for motions x from inner t = right x. Nodes of all groups are listed one group after the other.
+/// A tangent that consists of pieces. It is the sum of their blocks, and of left inner^-1 right: motions x determine
+/// the auxiliary variables t of all groups by inner t = right x, and these the forces left t. `inner` couples each
+/// group with its neighbours only. Nodes are listed by groups, one group after the other.
 struct PieceTangent {
   Eigen::Map<Eigen::MatrixXd> blocks{nullptr, 12, 0};  ///< 12 x 12 per piece, side by side; those of node -1 count not
   Eigen::Map<Eigen::MatrixXd> left{nullptr, 0, 0};     ///< 6 x rank per node of each group, one below the other
