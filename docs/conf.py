@@ -68,7 +68,7 @@ CONTENTS = {
     ],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
-        ("", """beam joints beyond explicit newton tree planar stops drives lines oil contact linearisation
+        ("", """beam joints beyond explicit newton tree planar kernel stops drives lines oil contact linearisation
             sensitivities accuracy tuning page"""),
     ],
 }
