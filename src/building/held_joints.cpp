@@ -17,6 +17,8 @@ class HeldJointFinder {
       for (const scene::LinkPoint& point : element->points()) touched_[links[point.link]] = true;
     for (const scene::ClearanceDescription& clearance : scene.clearances)
       touched_[links[clearance.joint.parent]] = touched_[links[clearance.joint.child]] = true;
+    for (const scene::LinkDescription& link : scene.links)
+      if (link.drag) touched_[links[link.name]] = true;
     // Forces of contacts are not known beforehand, so every link may be acted upon.
     if (!scene.contacts.empty()) touched_.assign(scene.links.size(), true);
     for (const scene::PointLoad& load : scene.loads)

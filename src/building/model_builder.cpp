@@ -48,6 +48,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.node_parents = std::move(solvable.node_parents);
   model.force_elements = place_force_elements(plan, model);
   for (auto& clearance : place_clearances(plan, model)) model.force_elements.push_back(std::move(clearance));
+  for (auto& drag : place_drags(plan, model)) model.force_elements.push_back(std::move(drag));
   for (auto& contact : place_contacts(plan, model)) model.force_elements.push_back(std::move(contact));
   model.touching_pairs = touching_pairs(model.force_elements);
   connect_contact_sensors(scene, model);

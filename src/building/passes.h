@@ -15,8 +15,8 @@ namespace flexarm {
 /// Positions of the joints of the tree that can be held (see HeldJoint), by name [m or rad]. These are hinges and
 /// sliders outside of loops, with a constant motion. They have no spring, no effort, neither Coulomb friction nor
 /// friction by the joint's force, and no coordinate that follows them. Their effort must follow from the rigid links
-/// that they carry. So no contact, spring between points, loop joint or rotor with an axis may act on these links, nor
-/// a load if they are part of the world, and no sensor may measure what carries them.
+/// that they carry. So no contact, drag, spring between points, loop joint or rotor with an axis may act on these
+/// links, nor a load if they are part of the world, and no sensor may measure what carries them.
 std::unordered_map<std::string, double> joints_to_hold(const scene::SceneDescription& scene, const LinkNames& links,
                                                        const JointTree& tree);
 
@@ -159,6 +159,12 @@ std::vector<InLoops> loop_inertias(const std::vector<int>& node_parents, const M
 /// to the model's.
 /// @throws ModelError for an element whose points are all on one rigid body.
 ForceElementList place_force_elements(const ScenePlan& plan, Model& model);
+
+// ---------------------------------------------------------------- drag_builder.cpp
+
+/// The drag on links, on the nodes of the model.
+/// @throws ModelError for a link that cannot move.
+ForceElementList place_drags(const ScenePlan& plan, const Model& model);
 
 // ---------------------------------------------------------------- clearance_builder.cpp
 

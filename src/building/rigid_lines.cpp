@@ -136,6 +136,7 @@ void require_rigid(const scene::LinkDescription& link) {
     throw ModelError(where + "with elements=\"0\" it is rigid, and <prestrain> would bend it");
   if (beam.mass_proportional_damping > 0)
     throw ModelError(where + "with elements=\"0\" it is rigid, and mass-proportional <damping> acts upon elements");
+  if (link.drag) throw ModelError(where + "with elements=\"0\" it is rigid, and <drag> acts upon elements");
 }
 
 /// Refuses whatever needs sections that bend.

@@ -9,16 +9,17 @@
 namespace flexarm {
 namespace {
 
-/// Area [m^2], second moments and torsion constant [m^4], shear correction factors, and edge distance [m] of a shape.
+/// Area [m^2], second moments and torsion constant [m^4], shear correction factors, edge distance, and extents along y
+/// and z [m] of a shape.
 struct Geometry {
-  double area, i2, i3, torsion, k2, k3, radius;
+  double area, i2, i3, torsion, k2, k3, radius, along_y, along_z;
 };
 
 Geometry geometry(const scene::Circle& circle, double nu) {
   const double r2 = circle.radius * circle.radius;
   const double i = kPi / 4 * r2 * r2;
   const double k = 6 * (1 + nu) / (7 + 6 * nu);
-  return {kPi * r2, i, i, 2 * i, k, k, circle.radius};
+  return {kPi * r2, i, i, 2 * i, k, k, circle.radius, 2 * circle.radius, 2 * circle.radius};
 }
 
 Geometry geometry(const scene::Tube& tube, double nu) {
@@ -27,7 +28,7 @@ Geometry geometry(const scene::Tube& tube, double nu) {
   const double i = kPi / 4 * (std::pow(ro, 4) - std::pow(ri, 4));
   const double q = (1 + m * m) * (1 + m * m);
   const double k = 6 * (1 + nu) * q / ((7 + 6 * nu) * q + (20 + 12 * nu) * m * m);
-  return {area, i, i, 2 * i, k, k, ro};
+  return {area, i, i, 2 * i, k, k, ro, 2 * ro, 2 * ro};
 }
 
 Geometry geometry(const scene::Rectangle& rectangle, double nu) {
@@ -35,7 +36,7 @@ Geometry geometry(const scene::Rectangle& rectangle, double nu) {
   const double a = std::max(w, h), b = std::min(w, h), ratio = b / a;
   const double torsion = a * b * b * b * (1.0 / 3 - 0.21 * ratio * (1 - std::pow(ratio, 4) / 12));
   const double k = 10 * (1 + nu) / (12 + 11 * nu);
-  return {w * h, w * h * h * h / 12, h * w * w * w / 12, torsion, k, k, 0.5 * std::hypot(w, h)};
+  return {w * h, w * h * h * h / 12, h * w * w * w / 12, torsion, k, k, 0.5 * std::hypot(w, h), w, h};
 }
 
 /// Cowper's factor of a thin box for shear along the webs: b flange length, h web length, equal thickness.
@@ -55,7 +56,9 @@ Geometry geometry(const scene::BoxTube& box, double nu) {
           4 * wm * wm * hm * hm * t / (2 * (wm + hm)),
           thin_box_shear_factor(hm, wm, nu),
           thin_box_shear_factor(wm, hm, nu),
-          0.5 * std::hypot(w, h)};
+          0.5 * std::hypot(w, h),
+          w,
+          h};
 }
 
 SectionProperties convert(const scene::GeometricSection& section) {
@@ -71,6 +74,7 @@ SectionProperties convert(const scene::GeometricSection& section) {
   out.inertia =
       Vector3(material.density * (g.i2 + g.i3), material.density * g.i2, material.density * g.i3).asDiagonal();
   out.radius = g.radius;
+  out.extent = {g.along_y, g.along_z};
   return out;
 }
 

@@ -16,6 +16,7 @@ struct SectionProperties {
   Vector3 center_of_mass = Vector3::Zero();  ///< in the section, from the reference line [m]
   Matrix3 inertia = Matrix3::Zero();         ///< rotary inertia about the centre of mass [kg m]
   double radius = 0;                         ///< largest distance of the edge from the reference line, for display [m]
+  Eigen::Vector2d extent = Eigen::Vector2d::Zero();  ///< along y and z [m]; zero if the shape is not known
 };
 
 /// Converts geometry and material, direct properties or full matrices.

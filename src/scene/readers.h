@@ -17,6 +17,9 @@ namespace flexarm::scene {
 /// Reads <beam>. Returns nothing if there is an error.
 std::optional<BeamDescription> read_beam(const XmlElement& beam, const std::string& link);
 
+/// Reads <drag> of a link that has been read apart from it. Returns nothing if there is an error.
+std::optional<DragDescription> read_drag(const XmlElement& drag, const LinkDescription& link);
+
 // ---------------------------------------------------------------- children of <joint>
 
 /// Reads <couple>, which makes the travel of a joint a function of its angle. Sets the joint's kind and data. The axis

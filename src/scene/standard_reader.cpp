@@ -250,7 +250,7 @@ LinkDescription read_link(const XmlElement& unnamed) {
   description.name = unnamed.name("name").value_or("");
   description.location = unnamed.location();
   const XmlElement link = unnamed.with_name(description.name);
-  link.expect_at_most_one({"inertial", "beam"});
+  link.expect_at_most_one({"inertial", "beam", "drag"});
   if (const std::optional<XmlElement> inertial = link.child("inertial"))
     description.inertial = read_inertial(*inertial);
   // Give urdfdom one child at a time, since it stops reading a link at the first error.

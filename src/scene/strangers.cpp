@@ -50,15 +50,15 @@ constexpr std::string_view kOfOthers[] = {"ros2_control",
                                           "muscle",
                                           "version"};
 /// flexarm's elements that are not children of <robot>. check_places() in urdf_reader.cpp records an error for them.
-constexpr std::string_view kPlaced[] = {"beam",         "release",  "axis2", "slide", "couple",
-                                        "child_origin", "friction", "root",  "hub",   "clearance"};
+constexpr std::string_view kPlaced[] = {"beam",     "release", "axis2", "slide",     "couple", "child_origin",
+                                        "friction", "root",    "hub",   "clearance", "drag"};
 /// The attributes and children of an element of URDF, with those that flexarm adds. <simulation> is here only to say
 /// where its children belong: its reader checks its attributes.
 struct Words {
   std::string_view tag, attributes, children;
 };
 constexpr Words kWords[] = {
-    {"link", "name type", "inertial visual collision contact beam"},
+    {"link", "name type", "inertial visual collision contact beam drag"},
     {"joint", "name type",
      "origin parent child axis limit dynamics mimic safety_controller calibration axis2 slide couple release friction "
      "clearance"},

@@ -32,7 +32,7 @@ constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"
                              {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
                              {"root", "simulation"}, {"drive", "robot"},      {"servo", "robot"},
                              {"hub", "beam"},        {"sensor", "robot"},     {"parameter", "robot"},
-                             {"clearance", "joint"}};
+                             {"clearance", "joint"}, {"drag", "link"}};
 
 /// Returns kPlaces, and a row for each kind of force element: these are children of <robot>.
 std::vector<Place> places_of_all(const std::vector<ForceElementKind>& kinds) {
@@ -207,11 +207,13 @@ class SceneReader {
     LinkDescription description = read_link(unnamed);
     const XmlElement link = unnamed.with_name(description.name);
     check_places(link, places_);
-    const std::optional<XmlElement> beam = link.child("beam");
-    if (!beam) return description;
-    description.beam = read_beam(*beam, description.name);
-    if (const std::optional<XmlElement> inertial = link.child("inertial"))
-      inertial->warning("is ignored, since the mass of a flexible link comes from its <beam>");
+    if (const std::optional<XmlElement> beam = link.child("beam")) {
+      description.beam = read_beam(*beam, description.name);
+      if (const std::optional<XmlElement> inertial = link.child("inertial"))
+        inertial->warning("is ignored, since the mass of a flexible link comes from its <beam>");
+      if (!description.beam) return description;
+    }
+    if (const std::optional<XmlElement> drag = link.child("drag")) description.drag = read_drag(*drag, description);
     return description;
   }
 

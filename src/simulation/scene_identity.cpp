@@ -143,9 +143,14 @@ class SceneParts {
   void add(const scene::RigidInertia& inertia) {
     all("mass", inertia.mass, "center_of_mass", inertia.center_of_mass, "inertia", inertia.inertia);
   }
+  void add(const scene::DragDescription& drag) {
+    const auto& [coefficient, density, area, at, location] = drag;
+    all("coefficient", coefficient, "density", density, "area", area, "at", at);
+  }
   void add(const scene::LinkDescription& link) {
-    const auto& [name, inertial, beam, visuals, collisions, location] = link;
+    const auto& [name, inertial, beam, visuals, collisions, location, drag] = link;
     all("name", name, "inertial", inertial, "beam", beam);
+    if (drag) all("drag", *drag);
   }
   /// Adds an option only if the scene gives it, so that scenes without the option keep the fingerprints of older
   /// versions.

@@ -15,15 +15,15 @@ inline const char* const kOilScene = R"xml(<robot name="r"> <link name="world"/>
     <simulation> <integrator scheme="em" step="1e-3"/> <effort joint="pump" history="3000*sin(40*t)"/> </simulation>
     </robot>)xml";
 
-/// A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch.
+/// Lines along a rod, one of them paid out by a winch, and drag of the air.
 inline const char* const kTendonScene = R"xml(<robot name="r"> <link name="world"/>
     <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint>
     <link name="rod"> <beam elements="8" order="2"> <centerline> <line to="1 0 0"/> </centerline>
       <section ea="2e5" ga2="1e5" ga3="1e5" gj="2" ei2="2.5" ei3="2.5" mass="0.5" j1="2e-4" j2="1e-4" j3="1e-4"/>
-      </beam> </link>
+      </beam> <drag coefficient="1.2" width="0.02"/> </link>
     <joint name="wrist" type="continuous"> <parent link="rod"/> <child link="tool"/> <origin xyz="1 0 0"/> </joint>
     <link name="tool"> <inertial> <mass value="1"/> <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>
-      </inertial> </link>
+      </inertial> <drag coefficient="1" area="0.01"/> </link>
     <tendon name="upper" ea="2000" damping="1"> <vias link="rod" from="0 0 0.03" to="1 0 0.03" count="9"/> </tendon>
     <tendon name="lower" ea="2000"> <vias link="rod" from="0 0 -0.03" to="0.875 0 -0.03" count="8"/>
       <via link="tool" at="0 0.1 -0.03"/> </tendon>

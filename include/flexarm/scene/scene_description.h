@@ -32,6 +32,17 @@ struct RigidInertia {
   SourceLocation location = {};
 };
 
+/// The drag of air or another fluid at rest on a link: minus half the density, times speed, coefficient, area and
+/// velocity, along each axis. Axes are those of the sections of a beam, or of a rigid link.
+struct DragDescription {
+  Vector3 coefficient;             ///< for flow along each axis [-]; along a beam: 0
+  double density = 1.2;            ///< of the fluid [kg/m^3]
+  std::optional<Vector3> area;     ///< that flow along each axis meets [m^2], for a beam per length [m]; a beam without
+                                   ///< it has that of its section
+  std::optional<Vector3> at = {};  ///< on a rigid link, in its frame [m]; empty: the centre of mass
+  SourceLocation location = {};
+};
+
 struct LinkDescription {
   std::string name;
   std::optional<RigidInertia> inertial;  ///< ignored if there is a beam
@@ -39,6 +50,7 @@ struct LinkDescription {
   std::vector<VisualDescription> visuals = {};     ///< shapes for display
   std::vector<VisualDescription> collisions = {};  ///< shapes for contact with other links and grounds
   SourceLocation location = {};
+  std::optional<DragDescription> drag = {};
 };
 
 enum class JointKind {

@@ -25,7 +25,7 @@ UNITS = {
     "joint/*/position": "rad or m", "joint/*/velocity": "rad/s or m/s", "joint/*/effort": "N m or N",
     "energy/*": "J", "momentum/*": "kg m/s", "angular_momentum/*": "kg m^2/s",
     "solver/step": "s", "solver/error_estimate": "m", "solver/*": "1",
-    "spring/*/length": "m", "spring/*/tension": "N",
+    "drag/*/f*": "N", "spring/*/length": "m", "spring/*/tension": "N",
     "tendon/*/length": "m", "tendon/*/*tension": "N", "cylinder/*/pressure_[12]": "Pa",
     "sensor/*/length": "m", "sensor/*/tension": "N",
     "contact/*/points": "1", "contact/*/gap": "m", "contact/*/f[xyz]": "N",
