@@ -29,9 +29,8 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
           fmt::format("<integrator>: scheme '{}' has no <{}>{}; take one of the energy-momentum family, such as em",
                       scheme.name, element->kind(), element->suits_all_schemes() ? " with friction or valves" : ""));
   if (scheme.hht != HhtForm::None)
-    throw ModelError(
-        fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}>",
-                    elements.front()->kind()));
+    throw ModelError(fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}>",
+                                 elements.front()->kind()));
   int most = 0, memory = 0, functions = 0;
   std::size_t numbers = 0;
   for (const auto& element : elements) {
