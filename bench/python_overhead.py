@@ -3,8 +3,8 @@
 quiet machine.
 
 Overhead of a call of step(): the time of a single step minus the time of a step in run(). Threads: the steps per second
-of two simulations in two threads, relative to one simulation. The scenes are the smallest scene, in which overhead
-dominates, and a scene with beams.
+of two simulations in two threads, relative to one simulation. Environments: the steps per second of a vector, relative
+to a single one. The scenes are the smallest scene, in which overhead dominates, and a scene with beams.
 """
 
 import os
@@ -12,6 +12,7 @@ import threading
 import time
 
 import flexarm
+import numpy
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "config", "examples")
 REPETITIONS = 9
@@ -64,11 +65,35 @@ def speedup(name, steps):
     return sorted(ratios)[REPETITIONS // 2]
 
 
+def vector_speedup(name, count=32, rounds=40):
+    """Return the steps per second of `count` environments as one vector, over those of a single one: a median."""
+    environments = [flexarm.Environment(simulation_of(name), no_reward),
+                    flexarm.VectorEnvironment(simulation_of(name), no_reward, num_envs=count)]
+    actions = [numpy.zeros(each.action_space.shape) for each in environments]
+
+    def step(index, times):
+        for _ in range(times):
+            environments[index].step(actions[index])
+
+    ratios = []
+    for _ in range(REPETITIONS):
+        for each in environments:
+            each.reset()
+        ratios.append(seconds(lambda: step(0, count * rounds)) / seconds(lambda: step(1, rounds)))
+    return sorted(ratios)[REPETITIONS // 2]
+
+
+def no_reward(observation, action, simulation):
+    return 0.0
+
+
 def main():
     for name, steps in (("rigid_double_pendulum", 50000), ("flexible_two_link_arm", 2000)):
         overhead, step = step_overhead(name, steps)
         print("%-22s step() %.2f us over the %.2f us of a step in run(); two threads %.2f times one"
               % (name, 1e6 * overhead, 1e6 * step, speedup(name, steps)))
+    name = "flexible_two_link_arm"
+    print("%-22s 32 environments as a vector: %.2f times the steps per second of one" % (name, vector_speedup(name)))
 
 
 if __name__ == "__main__":
