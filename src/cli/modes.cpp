@@ -69,13 +69,13 @@ std::string name_of(const Mode& mode, std::size_t number) {
   return is_oscillation ? name : fmt::format("mode {}: {}", number, kind_of(mode));
 }
 
-void write_modes_page(const std::string& path, const Simulation& simulation, const std::vector<Mode>& modes,
-                      bool is_equilibrium) {
+pictures::EncodedRun picture_of_modes(const Simulation& simulation, const std::vector<Mode>& modes,
+                                      bool is_equilibrium) {
   std::vector<pictures::NamedMode> named;
   for (const Mode& mode : modes) named.push_back({name_of(mode, named.size() + 1), mode});
   const std::string title = fmt::format("{}: natural modes about {}", simulation.scene().name,
                                         is_equilibrium ? "the equilibrium" : "the initial configuration");
-  pictures::write_page(path, {pictures::record_modes(simulation, named, title)});
+  return pictures::record_modes(simulation, named, title);
 }
 
 int solve(const ModesArguments& arguments) {
@@ -89,9 +89,9 @@ int solve(const ModesArguments& arguments) {
     fmt::print("{}", modes_as_csv(simulation, modes));
   else
     print_text(simulation, modes, is_equilibrium);
-  if (page.empty()) return kDone;
-  write_modes_page(page, simulation, modes, is_equilibrium);
-  present_page(arguments.page, page, arguments.json || arguments.csv ? stderr : stdout);
+  if (!page.empty())
+    write_page(arguments.page, page, {picture_of_modes(simulation, modes, is_equilibrium)},
+               arguments.json || arguments.csv ? stderr : stdout);
   return kDone;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/page_options.h"
 
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "cli/files.h"
 #include "cli/installation.h"
 #include "cli/simulation_output.h"
+#include "pictures/page.h"
 
 namespace flexarm::cli {
 
@@ -32,6 +34,16 @@ void present_page(const PageOptions& options, const std::string& path, std::FILE
   fmt::print(stream, "{} shows it in a browser\n", path);
   if (options.opens && !open_in_browser(path))
     fmt::print(stderr, "flexarm: no browser can be started by xdg-open: open {} yourself\n", path);
+}
+
+void write_page(const PageOptions& options, const std::string& path, const std::vector<pictures::EncodedRun>& runs,
+                std::FILE* stream) {
+  std::set<std::string> notes;
+  for (const pictures::EncodedRun& run : runs)
+    for (const std::string& note : run.notes)
+      if (notes.insert(note).second) fmt::print(stderr, "flexarm: warning: {}\n", note);
+  pictures::write_page(path, runs);
+  present_page(options, path, stream);
 }
 
 }  // namespace flexarm::cli

@@ -3,8 +3,10 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "cli/scene_input.h"
+#include "pictures/recording.h"
 
 namespace flexarm::cli {
 
@@ -22,5 +24,10 @@ std::string page_path(const PageOptions& options, const SceneInput& scene, const
 
 /// Says where the page is, and opens it in a browser if that is wanted.
 void present_page(const PageOptions& options, const std::string& path, std::FILE* stream);
+
+/// Writes a page with these runs, prints their notes as warnings, and presents it.
+/// @throws std::runtime_error naming the file and the reason if it cannot be written
+void write_page(const PageOptions& options, const std::string& path, const std::vector<pictures::EncodedRun>& runs,
+                std::FILE* stream);
 
 }  // namespace flexarm::cli

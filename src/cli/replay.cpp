@@ -30,31 +30,27 @@ class BothRuns {
  public:
   explicit BothRuns(const Simulation& simulation)
       : start_(simulation.copy()), replayed_(simulation, {"replay"}), recorded_{{{"time", "s"}}, {}} {
-    const ResultColumns all(simulation, ResultColumns::Solver::Without);
-    for (const ResultColumn& column : all.columns())
-      if (is_position(column.name)) recorded_.columns.push_back(column);
+    for (const char* pattern : {"joint/*/position", "joint/*/effort"}) {
+      if (simulation.coordinate_names().empty()) continue;
+      const ResultColumns chosen(simulation, ResultColumns::Solver::Without, {pattern});
+      recorded_.columns.insert(recorded_.columns.end(), chosen.columns().begin() + 1, chosen.columns().end());
+    }
   }
 
-  void keep(const Simulation& simulation, const std::vector<double>& positions) {
+  void keep(const Simulation& simulation, const recording::RecordedJoints& joints) {
     if (!replayed_.is_due(simulation)) return;
     replayed_.keep(simulation, {});
     recorded_.values.push_back(simulation.time());
-    recorded_.values.insert(recorded_.values.end(), positions.begin(), positions.end());
+    for (const std::vector<double>& values : {joints.positions, joints.efforts})
+      recorded_.values.insert(recorded_.values.end(), values.begin(), values.end());
   }
 
-  void write(const std::string& path) const {
-    pictures::write_page(path,
-                         {pictures::record_rows(start_, recorded_, {"recorded run", kAllRows}), replayed_.encode()});
+  std::vector<pictures::EncodedRun> encode() const {
+    return {pictures::record_rows(start_, recorded_, {"recorded run", kAllRows}), replayed_.encode()};
   }
 
  private:
   static constexpr double kAllRows = 1e9;  ///< a rate with which all rows are shown, since only few are kept
-
-  static bool is_position(const std::string& column) {
-    const std::string end = "/position";
-    return column.rfind("joint/", 0) == 0 && column.size() > end.size() &&
-           column.compare(column.size() - end.size(), end.size(), end) == 0;
-  }
 
   Simulation start_;
   pictures::Recording replayed_;
@@ -124,10 +120,7 @@ int replay(const ReplayArguments& arguments) {
     }
     const recording::ReplayReport report = recording_library().replay(std::move(simulation), options);
     print_report(report, arguments.replay.largest);
-    if (runs) {
-      runs->write(page);
-      present_page(arguments.page, page, stdout);
-    }
+    if (runs) write_page(arguments.page, page, runs->encode(), stdout);
     return report.agrees(arguments.replay.largest) ? kDone : kFailed;
   } catch (const std::invalid_argument& error) {
     throw InputError(std::string("flexarm: ") + error.what());

@@ -69,8 +69,7 @@ int show_state(const ShowArguments& arguments, const SimulateArguments& run) {
   const std::string title = fmt::format("{}, t = {:.6g} s", simulation.scene().name, simulation.time());
   pictures::Recording recording(simulation, {title});
   recording.keep(simulation, {});
-  pictures::write_page(run.output, {recording.encode()});
-  present_page(arguments.page, run.output, stdout);
+  write_page(arguments.page, run.output, {recording.encode()}, stdout);
   return kDone;
 }
 

@@ -146,10 +146,11 @@ void print_warnings(const Simulation& simulation, const Run& run) {
     fmt::print(stderr, "flexarm: warning: {}\n", warning);
 }
 
-/// The picture for ParaView. Prints which meshes it lacks.
-std::shared_ptr<const pictures::Picture> picture_for_vtk(const Simulation& simulation) {
+/// The picture for pages and for ParaView. Prints which meshes it lacks.
+std::shared_ptr<const pictures::Picture> picture_for(const SimulateArguments& arguments, const Simulation& simulation) {
   auto picture = std::make_shared<const pictures::Picture>(pictures::picture_of(simulation, {}));
-  for (const std::string& note : picture->notes) fmt::print(stderr, "flexarm: warning: --vtk: {}\n", note);
+  for (const std::string& note : picture->notes)
+    fmt::print(stderr, "flexarm: warning: {}{}\n", arguments.vtk.empty() ? "" : "--vtk: ", note);
   return picture;
 }
 
@@ -189,7 +190,7 @@ int simulate(SimulateArguments arguments) {
   prepare_files(arguments, simulation);
   check_duration(arguments, simulation);
   const double begin = simulation.time();
-  if (!arguments.vtk.empty()) arguments.picture = picture_for_vtk(simulation);
+  if (!arguments.vtk.empty() || is_page(arguments.output)) arguments.picture = picture_for(arguments, simulation);
   catch_interruptions();
   const Run result = run_and_keep(arguments, simulation);
   print_warnings(simulation, result);

@@ -21,7 +21,8 @@ struct SimulateArguments {
   std::string output, resume, checkpoint;
   std::string commands;  ///< file of efforts; empty: none
   std::string vtk;       ///< folder for ParaView
-  /// Of the scene, for `vtk`: its meshes are read once, also if several runs are tried. Null without `vtk`.
+  /// Of the scene, for `vtk` and warnings: its meshes are read once, also if several runs are tried. Null without `vtk`
+  /// and page.
   std::shared_ptr<const pictures::Picture> picture;
   double until = 10;                 ///< [s]
   double checkpoint_every = 0;       ///< [s]; 0: at the end only

@@ -55,10 +55,7 @@ int solve(const StaticArguments& arguments) {
   warn_of_instability(simulation, result, arguments.wanted);
   std::FILE* const report = is_standard_output(arguments.output) ? stderr : stdout;
   if (report == stdout) print_equilibrium(simulation);
-  if (!page.empty()) {
-    pictures::write_page(page, {pictures::record_equilibrium(start, simulation)});
-    present_page(arguments.page, page, report);
-  }
+  if (!page.empty()) write_page(arguments.page, page, {pictures::record_equilibrium(start, simulation)}, report);
   if (arguments.output.empty()) return kDone;
   CsvWriter output(arguments.output, ResultColumns(simulation, ResultColumns::Solver::Without));
   output.write_row(simulation);

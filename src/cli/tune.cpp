@@ -108,9 +108,10 @@ pictures::EncodedRun recorded(const TuneArguments& arguments, const scene::Scene
 /// Writes a page that plays the scene as it was beside the tuned one.
 void write_tuning_page(const TuneArguments& arguments, const std::string& path, const scene::SceneDescription& scene,
                        const RunSettings& settings) {
-  pictures::write_page(path, {recorded(arguments, scene, scene.name),
-                              recorded(arguments, with_settings(scene, settings), scene.name + ", tuned")});
-  present_page(arguments.page, path, stdout);
+  write_page(arguments.page, path,
+             {recorded(arguments, scene, scene.name),
+              recorded(arguments, with_settings(scene, settings), scene.name + ", tuned")},
+             stdout);
 }
 
 int tune_scene(const TuneArguments& arguments) {

@@ -1,7 +1,9 @@
 #include "pictures/picture.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <type_traits>
@@ -24,6 +26,18 @@ bool has_axis(scene::JointKind kind) {
          kind != JointKind::Universal && kind != JointKind::Slide;
 }
 
+/// The box of even density with this inertia, if a body can have it.
+std::optional<PictureShape> equal_box(const scene::RigidInertia& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(inertia.inertia);
+  Matrix3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0) axes.col(0) *= -1;
+  const Vector3 moments = solver.eigenvalues();
+  // A moment is m (b^2 + c^2) / 12 of the other two edges.
+  const Vector3 squares = 6 / inertia.mass * (Vector3::Constant(moments.sum()) - 2 * moments);
+  if (!(inertia.mass > 0) || !squares.allFinite() || !(squares.minCoeff() > 0)) return std::nullopt;
+  return PictureShape{{inertia.center_of_mass, Quaternion(axes)}, scene::BoxShape{squares.cwiseSqrt()}, {}};
+}
+
 class PictureMaker {
  public:
   PictureMaker(const Simulation& simulation, const std::vector<ResultColumn>& columns)
@@ -39,6 +53,7 @@ class PictureMaker {
   Picture make() {
     for (std::size_t i = 0; i < scene_.links.size(); ++i) add_link(i);
     for (const scene::JointDescription& joint : scene_.joints) add_joint(joint);
+    replace_lost_meshes();
     for (std::size_t i = 0; i < scene_.force_elements.size(); ++i)
       if (const std::size_t points = simulation_.most_line_points(i); points > 1)
         picture_.lines.push_back({scene_.force_elements[i]->kind(), scene_.force_elements[i]->name, i, points});
@@ -51,7 +66,43 @@ class PictureMaker {
     const scene::LinkDescription& link = scene_.links[index];
     picture_.links.push_back({link.name});
     add_beam(index);
-    for (const scene::VisualDescription& visual : link.visuals) add_shape(link.name, visual);
+    for (const scene::VisualDescription& visual : link.visuals) {
+      const std::string failure = add_shape(visual, picture_.links.back());
+      if (!failure.empty()) lost_meshes_.push_back({index, std::get<scene::MeshShape>(visual.shape).url, failure});
+    }
+  }
+
+  /// Notes which meshes are missing. What stands for a rigid link without any other shape: shapes that touch others, or
+  /// a box with the same inertia.
+  void replace_lost_meshes() {
+    std::vector<std::string> substitutes(picture_.links.size());
+    for (const LostMesh& lost : lost_meshes_) {
+      PictureLink& link = picture_.links[lost.link];
+      std::string& substitute = substitutes[lost.link];
+      if (link.beam < 0 && link.shapes.empty()) substitute = add_substitute(lost.link);
+      picture_.notes.push_back(fmt::format("link '{}': the mesh '{}' is not shown{}: {}", link.name, lost.url,
+                                           substitute.empty() ? "" : ", but " + substitute, lost.failure));
+    }
+  }
+
+  /// Returns what it is.
+  std::string add_substitute(std::size_t index) {
+    const scene::LinkDescription& link = scene_.links[index];
+    PictureLink& shown = picture_.links[index];
+    for (const scene::VisualDescription& shape : link.collisions) add_shape(shape, shown);
+    if (!shown.shapes.empty()) return "its <collision>";
+    if (const auto box = link.inertial ? equal_box(*link.inertial) : std::nullopt) {
+      shown.shapes.push_back(*box);
+      return "a box with its mass and inertia";
+    }
+    constexpr double kPartOfDistance = 0.15, kSmall = 0.02;  // of the nearest child; without one [m]
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Vector3& point : shown.stick)
+      if (point.norm() > 0) distance = std::min(distance, point.norm());
+    const double radius = std::isfinite(distance) ? kPartOfDistance * distance : kSmall;
+    const Vector3 place = link.inertial ? link.inertial->center_of_mass : Vector3::Zero();
+    shown.shapes.push_back({{place, Quaternion::Identity()}, scene::SphereShape{radius}, {}});
+    return "a sphere";
   }
 
   void add_beam(std::size_t index) {
@@ -83,7 +134,8 @@ class PictureMaker {
     return has_shape ? beam.radius : std::min(beam.radius, kSlender * beam.arc_lengths.back());
   }
 
-  void add_shape(const std::string& link, const scene::VisualDescription& visual) {
+  /// Returns why a shape cannot be shown; empty: it is.
+  std::string add_shape(const scene::VisualDescription& visual, PictureLink& link) {
     PictureShape shape{visual.origin, {}, visual.color};
     try {
       std::visit(
@@ -94,10 +146,10 @@ class PictureMaker {
               shape.shape = given;
           },
           visual.shape);
-      picture_.links.back().shapes.push_back(std::move(shape));
+      link.shapes.push_back(std::move(shape));
+      return {};
     } catch (const std::runtime_error& error) {
-      picture_.notes.push_back(fmt::format("link '{}': the mesh '{}' is not shown: {}", link,
-                                           std::get<scene::MeshShape>(visual.shape).url, error.what()));
+      return error.what();
     }
   }
 
@@ -168,7 +220,12 @@ class PictureMaker {
 
   const Simulation& simulation_;
   const scene::SceneDescription& scene_;
+  struct LostMesh {
+    std::size_t link;
+    std::string url, failure;
+  };
   std::map<std::string, int> links_;
+  std::vector<LostMesh> lost_meshes_;
   Picture picture_;
 };
 

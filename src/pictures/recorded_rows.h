@@ -16,10 +16,11 @@ struct ResultRows {
   std::size_t count() const { return columns.empty() ? 0 : values.size() / columns.size(); }
 };
 
-/// Records the rows of a run of the scene of `simulation`, which is in its state at the start. Links are where the
-/// columns frame/LINK/* have them, or else where the positions of joints put them. Beams are as the columns beam/LINK/*
-/// have them, or else bent as by a force at their end; a note of the picture says so.
-/// @throws std::invalid_argument if no column has a time, or places a link of the scene
+/// Records the rows of a run of the scene of `simulation`, which is in its state at the start. RecordedMotion says
+/// where things are, RecordedArrows which forces act. Strains and stress resultants of beams are those of the columns
+/// beam/LINK/*, or else unknown. Notes of the picture say what the rows lack; without a column that places a link, all
+/// links stay at the start.
+/// @throws std::invalid_argument if no column has a time
 EncodedRun record_rows(const Simulation& simulation, const ResultRows& rows, const RecordingOptions& options);
 
 }  // namespace flexarm::pictures

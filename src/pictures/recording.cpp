@@ -26,11 +26,11 @@ ResultColumns columns_of(const Simulation& simulation, const RecordingOptions& o
   return ResultColumns(simulation, ResultColumns::Solver::With, options.columns);
 }
 
+}  // namespace
+
 bool measures_reaction(const scene::Sensor& sensor) {
   return sensor.kind == scene::SensorKind::Wrench || sensor.kind == scene::SensorKind::Reaction;
 }
-
-}  // namespace
 
 void append_line(const Simulation& simulation, const PictureLine& line, std::vector<Vector3>& scratch,
                  std::vector<double>& values) {
@@ -107,7 +107,7 @@ Recording::Recording(const Simulation& simulation, const RecordingOptions& optio
   picture_.title = options.title;
 }
 
-Recording::Recording(Picture picture, double rate) : picture_(std::move(picture)), has_arrows_(false), due_(rate) {}
+Recording::Recording(Picture picture, double rate) : picture_(std::move(picture)), has_arrows_(true), due_(rate) {}
 
 double Recording::last_time() const {
   return times_.empty() ? std::numeric_limits<double>::quiet_NaN() : times_.back();
@@ -117,16 +117,17 @@ void Recording::keep(const Simulation& simulation, const StepCounts& counts) {
   std::vector<double> values;
   if (!values_.empty()) values.reserve(values_.front().size());
   instant_->append(simulation, counts, values);
-  keep(simulation.time(), std::move(values));
-  if (has_arrows_) find_arrows(simulation, arrows_.back());
+  Arrows arrows;
+  if (has_arrows_) find_arrows(simulation, arrows);
+  keep(simulation.time(), std::move(values), std::move(arrows));
 }
 
-void Recording::keep(double time, std::vector<double> values) {
+void Recording::keep(double time, std::vector<double> values, Arrows arrows) {
   const bool is_a_run = clips_.empty() && still_ < 0;  // else indices of instants are kept
   if (is_a_run && times_.size() == kMostInstants) thin_out();
   times_.push_back(time);
   values_.push_back(std::move(values));
-  arrows_.emplace_back();
+  arrows_.push_back(std::move(arrows));
   due_.note(time);
 }
 
@@ -207,7 +208,7 @@ EncodedRun Recording::encode() const {
       }
   append_values(columns, width);
   for (const PictureMesh& mesh : picture_.meshes) append_mesh(mesh.surface, bytes);
-  return {picture_as_json(picture_, {times_.size(), most, clips_, still_}), deflated(bytes)};
+  return {picture_as_json(picture_, {times_.size(), most, clips_, still_}), deflated(bytes), picture_.notes};
 }
 
 }  // namespace flexarm::pictures

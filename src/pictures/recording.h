@@ -21,8 +21,9 @@ struct Clip {
 
 /// A run as a page contains it.
 struct EncodedRun {
-  std::string picture;  ///< JSON
-  std::string motion;   ///< bytes of a zlib stream
+  std::string picture;                  ///< JSON
+  std::string motion;                   ///< bytes of a zlib stream
+  std::vector<std::string> notes = {};  ///< those of the picture
 };
 
 /// Appends the points of a line. Those that it has less than at most are repetitions of its last one.
@@ -52,6 +53,8 @@ using Arrows = std::array<std::vector<ActingWrench>, kArrowKinds>;
 
 constexpr std::array<const char*, kArrowKinds> kArrowNames = {"effort", "load", "reaction", "contact"};
 
+/// Whether a sensor measures the force and moment that a joint transmits.
+bool measures_reaction(const scene::Sensor& sensor);
 /// What sensors of the kinds wrench and reaction measure now, without their errors. Overwrites `reactions`.
 void find_reactions(const Simulation& simulation, std::vector<ActingWrench>& reactions);
 /// Forces of contacts on their first bodies. Overwrites `pushes`.
@@ -89,8 +92,8 @@ class Recording {
   bool is_due(const Simulation& simulation) const { return due_.is_due(simulation); }
   /// Keeps the present state. `counts`: of steps since the last instant.
   void keep(const Simulation& simulation, const StepCounts& counts);
-  /// Keeps an instant without arrows. `values`: see Instant.
-  void keep(double time, std::vector<double> values);
+  /// Keeps an instant. `values`: see Instant.
+  void keep(double time, std::vector<double> values, Arrows arrows = {});
   /// Steps until a time [s], and keeps the instants that are due, and the first and the last one.
   /// @param before_step  called before each step; the run ends if it returns false
   /// @returns the result of the last step

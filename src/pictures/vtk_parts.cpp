@@ -230,6 +230,56 @@ class VtkBodies : public VtkPart {
   VtkPolyData constant_;              // all but the points
 };
 
+// ---------------------------------------------------------------- springs and tendons
+
+/// The lines along which springs between points and tendons act.
+class VtkLines : public VtkPart {
+ public:
+  explicit VtkLines(const Picture& picture) : VtkPart("lines"), lines_(picture.lines) {
+    std::vector<std::string> names, kinds;
+    for (const PictureLine& line : lines_) {
+      names.push_back(line.name);
+      kinds.push_back(line.kind);
+    }
+    names_ = {vtk_array("line_names", names), vtk_array("line_kinds", kinds)};
+  }
+
+  VtkPolyData show(const Simulation& simulation) override {
+    std::vector<double> positions, lengths, tensions, last_tensions;
+    std::vector<std::int32_t> indices;
+    VtkCells cells;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      simulation.line_points(lines_[i].element, points_);
+      for (const Vector3& point : points_) {
+        cells.points.push_back(static_cast<std::int64_t>(cells.points.size()));
+        put(point, positions);
+      }
+      cells.ends.push_back(static_cast<std::int64_t>(cells.points.size()));
+      indices.push_back(static_cast<std::int32_t>(i));
+      outputs_.clear();
+      put_out_force(simulation, lines_[i].element, outputs_);  // length, tension at the first point, at the last one
+      lengths.push_back(outputs_.at(0));
+      tensions.push_back(outputs_.at(1));
+      last_tensions.push_back(outputs_.back());
+    }
+    VtkPolyData data;
+    data.point_count = cells.points.size();
+    data.points = vtk_array("points", positions, 3);
+    data.lines = vtk_cells(cells);
+    data.line_count = lines_.size();
+    data.field_data = names_;
+    data.cell_data = {vtk_array("line", indices), vtk_array("length", lengths), vtk_array("tension", tensions),
+                      vtk_array("last_tension", last_tensions)};
+    return data;
+  }
+
+ private:
+  std::vector<PictureLine> lines_;
+  std::vector<std::string> names_;
+  std::vector<Vector3> points_;  // scratch
+  std::vector<double> outputs_;  // scratch
+};
+
 // ---------------------------------------------------------------- wrenches
 
 /// Forces and moments at points: efforts, loads, reactions, contacts.
@@ -271,6 +321,7 @@ std::vector<std::unique_ptr<VtkPart>> vtk_parts(const Simulation& simulation, co
   std::vector<std::unique_ptr<VtkPart>> parts;
   parts.push_back(std::make_unique<VtkBeams>(simulation));
   parts.push_back(std::make_unique<VtkBodies>(simulation, picture));
+  parts.push_back(std::make_unique<VtkLines>(picture));
   parts.push_back(std::make_unique<VtkWrenches>());
   return parts;
 }

@@ -25,7 +25,8 @@ class VtkPart {
   std::string name_;
 };
 
-/// Lines of beams, surfaces of rigid links, and wrenches. A scene that has none of them has empty parts.
+/// Lines of beams, surfaces of rigid links, lines of springs and tendons, and wrenches. A scene that has none of them
+/// has empty parts.
 /// @param picture  of the simulation; only for this call
 std::vector<std::unique_ptr<VtkPart>> vtk_parts(const Simulation& simulation, const Picture& picture);
 

@@ -74,7 +74,7 @@ Encoded encode_rows(GuardedSimulation& guarded, const std::vector<std::pair<std:
 
 std::string page(const std::vector<Encoded>& runs) {
   std::vector<pictures::EncodedRun> out;
-  for (const auto& [picture, motion] : runs) out.push_back({picture, motion});
+  for (const auto& [picture, motion] : runs) out.push_back({picture, motion, {}});
   return pictures::page_of(out);
 }
 

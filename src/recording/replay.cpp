@@ -251,6 +251,7 @@ class Replay {
       fail("a message of joint_states has not as many positions and velocities as names");
     const std::size_t row = recorded_.size();
     recorded_.resize(row + report_.joints.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> efforts(report_.joints.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t joint = 0; joint < report_.joints.size(); ++joint)
       positions_.push_back(simulation.position(joint));
     times_.push_back(simulation.time());
@@ -259,6 +260,7 @@ class Replay {
       if (!joint) fail("its joint_states have '" + state.name[i] + "', which the scene does not");
       JointDeviation& deviation = report_.joints[*joint];
       recorded_[row + *joint] = state.position[i];
+      if (state.effort.size() == state.name.size()) efforts[*joint] = state.effort[i];
       const auto note = [&](double difference, double& largest, double& time) {
         if (!(std::abs(difference) > largest)) return;
         largest = std::abs(difference);
@@ -267,7 +269,8 @@ class Replay {
       note(state.position[i] - simulation.position(*joint), deviation.position, deviation.position_time);
       note(state.velocity[i] - simulation.velocity(*joint), deviation.velocity, deviation.velocity_time);
     }
-    if (options_.on_state) options_.on_state(simulation, {recorded_.begin() + static_cast<long>(row), recorded_.end()});
+    if (options_.on_state)
+      options_.on_state(simulation, {{recorded_.begin() + static_cast<long>(row), recorded_.end()}, efforts});
     ++report_.states;
   }
 

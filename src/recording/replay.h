@@ -11,6 +11,11 @@
 
 namespace flexarm::recording {
 
+/// What a bag says of the coordinates at one time; NaN: not recorded.
+struct RecordedJoints {
+  std::vector<double> positions, efforts;
+};
+
 /// What to replay, and how to compare.
 struct ReplayOptions {
   std::string bag;
@@ -21,9 +26,8 @@ struct ReplayOptions {
   double stop_duration = 0;     ///< the node's parameter of this name [s]
   double largest = 1e-6;        ///< tolerance for differences of positions [rad or m]
   int timing = 1;               ///< number of steps by which a command may have acted earlier or later than recorded
-  /// Called for each state that is compared, with the replayed simulation at that time, and the recorded positions of
-  /// its coordinates; NaN: not recorded.
-  std::function<void(const Simulation& replayed, const std::vector<double>& recorded)> on_state = {};
+  /// Called for each state that is compared, with the replayed simulation at that time.
+  std::function<void(const Simulation& replayed, const RecordedJoints& recorded)> on_state = {};
 };
 
 /// Deviation of a coordinate's recorded motion from the replayed one.

@@ -76,7 +76,7 @@ class Replay(unittest.TestCase):
                     bag.write("/joint_command", JointState(name=["rail"], effort=[0]), before)
                 if has_clock:
                     bag.write("/clock", Clock(stamp), stamp)
-                state = JointState(name=["rail"], position=[0], velocity=[0])
+                state = JointState(name=["rail"], position=[0], velocity=[0], effort=[n])
                 state.header.stamp = stamp
                 bag.write("/joint_states", state, stamp)
 
@@ -118,6 +118,9 @@ class Replay(unittest.TestCase):
         self.assertLess(abs(recorded.link("cart")[:, 0]).max(), 1e-9)
         self.assertAlmostEqual(replayed.link("cart")[-1, 0], 0.3, delta=OVERSHOOT)
         self.assertTrue((recorded.times == replayed.times).all())
+        efforts = recorded.arrows["effort"][:, 0, 3:6]
+        self.assertLess(abs(efforts[:, 0] - recorded.times / STEP).max(), 0.01)
+        self.assertEqual(abs(efforts[:, 1:]).max(), 0)
 
     # From 1 m/s it stops in half the distance that it would travel at this speed in the stopping time.
     def test_stops_take_as_long_as_those_of_the_run(self):

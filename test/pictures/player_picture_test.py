@@ -116,14 +116,14 @@ def test_clips_loop_one_by_one_beside_the_arm_at_rest(browser, play):
     play(run)
     first = run.times[25]
     clips = browser.run("return [...document.querySelectorAll('#clips option')].map((option) => option.textContent)")
-    assert clips == [clip["name"] for clip in run.picture["clips"]]
-    browser.run("const e = document.getElementById('clips'); e.selectedIndex = 1; e.onchange({target: e})")
+    assert clips == ["All, one after the other"] + [clip["name"] for clip in run.picture["clips"]]
+    browser.run("const e = document.getElementById('clips'); e.selectedIndex = 2; e.onchange({target: e})")
     assert browser.run("return flexarm.time") == pytest.approx(first)
     browser.run("flexarm.setTime(arguments[0]); flexarm.speed = 1; flexarm.play()", run.times[48])
     browser.until(f"flexarm.time < {run.times[46]}")
     assert browser.run("return flexarm.time") >= first
     browser.run("flexarm.setTime(arguments[0])", run.times[60])  # in the third clip
-    assert browser.run("return document.getElementById('clips').selectedIndex") == 2
+    assert browser.run("return document.getElementById('clips').selectedIndex") == 3
     browser.frame()
     assert browser.run("return Player.stage.views[0].ghost.root.visible")
 

@@ -143,7 +143,7 @@ def test_meshes_are_in_the_page_and_missing_ones_are_told(tmp_path):
     corners = places[triangles]
     volume = np.linalg.det(corners).sum() / 6
     assert volume == pytest.approx(1 / 6, abs=1e-4)  # coordinates have 16 bits
-    assert [len(link["shapes"]) for link in run.picture["links"]] == [0, 1, 0]
+    assert [len(link["shapes"]) for link in run.picture["links"]] == [0, 1, 1]
     note, = run.picture["notes"]
     assert "none.stl" in note and "link 'b'" in note
 
@@ -205,8 +205,17 @@ def test_an_equilibrium_is_beside_the_start(tmp_path):
     simulation.solve_static()
     end = simulation.beam_points(simulation.flexible_links[0])["pose"][-1, :3]
     tip = run.beams[0][:, -1, :3]
-    assert run.frames == 2 and run.picture["still"] == 0
-    expect_equal(tip, np.array([start, end]))
+    assert run.picture["still"] == 0
+    for axis in range(3):
+        assert tip[:2, axis] == pytest.approx([start[axis], end[axis]], abs=half_step(tip[:, axis]))
+    # It sags by 2 mm per metre, which is hardly seen, so the page has it enlarged, too.
+    first, enlarged = run.picture["clips"]
+    assert first == {"name": "equilibrium", "first": 1, "count": 1}
+    assert enlarged == {"name": "deflections × 20", "first": 2, "count": 1} and run.frames == 3
+    assert run.times[2] > run.times[1]  # so that programs can choose it by its time
+    assert (tip[2] - start)[2] == pytest.approx(20 * (end - start)[2], abs=2 * half_step(tip[:, 2]))
+    assert run.beams[0][2, :, 7:] == pytest.approx(run.beams[0][1, :, 7:], abs=1e-12)
+    assert run.columns["energy/strain"][2] == run.columns["energy/strain"][1] > 0
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.h5"])
@@ -241,10 +250,21 @@ def test_results_with_joints_only_are_where_joints_put_them(tmp_path):
     assert by_joints.link("forearm")[:, :3] == pytest.approx(expect, abs=2 * half_step(expect))
 
 
+def test_results_without_any_place_are_plots_beside_the_arm_at_its_start(tmp_path):
+    (tmp_path / "energies.csv").write_text("time,energy/total\n0,1\n0.5,3\n1,2\n")
+    printed = flexarm_program(tmp_path, "show", ARM, "--runs", "energies.csv", "--output", "a.html")
+    run, = read_page(tmp_path / "a.html")
+    assert "no column places a link" in run.picture["notes"][-1] and run.picture["notes"][-1] in printed
+    assert run.columns["energy/total"] == pytest.approx([1, 3, 2], abs=1e-4)
+    start = flexarm.Simulation(ARM)
+    for name, pose in zip(start.link_names, start.link_poses):
+        assert run.link(name)[-1] == pytest.approx(pose, abs=1e-12)
+
+
 def test_errors_say_what_is_wrong(tmp_path):
     assert "NAME.html" in flexarm_program(tmp_path, "show", ARM, "--output", "run.mp4", status=2)
-    (tmp_path / "other.csv").write_text("time,energy/total\n0,1\n1,1\n")
-    assert "no column places a link" in flexarm_program(tmp_path, "show", ARM, "--runs", "other.csv", status=2)
+    (tmp_path / "empty.csv").write_text("")
+    assert "expected columns" in flexarm_program(tmp_path, "show", ARM, "--runs", "empty.csv", status=2)
     assert "cannot write" in flexarm_program(tmp_path, "show", ARM, "--output", "none/run.html", status=2)
     assert "--show" in flexarm_program(tmp_path, "modes", ARM, "--page", "run.html", status=2)
     simulation = flexarm.Simulation(ARM)
@@ -309,7 +329,7 @@ def test_a_tuned_scene_is_beside_the_given_one(tmp_path):
     assert after.link("forearm")[-1, :3] == pytest.approx(before.link("forearm")[-1, :3], abs=2e-2 * scale)
 
 
-def test_runs_of_a_sweep_are_side_by_side(tmp_path):
+def test_runs_of_a_sweep_are_side_by_side(tmp_path, monkeypatch):
     (tmp_path / "plan.yaml").write_text("design: {kind: grid, parameters: {payload: [0.5, 1.0, 1.5]}}\n"
                                         "until: 0.2\nmeasures: {energy: {maximum: energy/total}}\n")
     scene = os.path.join(ROOT, "config", "sweep", "slewing_arm.urdf")
@@ -318,6 +338,13 @@ def test_runs_of_a_sweep_are_side_by_side(tmp_path):
     assert heavy.picture["title"] == "run 3: payload = 1.5" and light.picture["title"] == "run 1: payload = 0.5"
     assert heavy.times[-1] == light.times[-1] == pytest.approx(0.2)
     assert "up to 3" in flexarm_program(tmp_path, "sweep", scene, "plan.yaml", "--show", "4", status=2)
+    (tmp_path / "plan_results.html").unlink()
+    (tmp_path / "browser").write_text('#!/bin/sh\necho "$@" > "%s"\n' % (tmp_path / "opened"))
+    (tmp_path / "browser").chmod(0o755)
+    monkeypatch.setenv("BROWSER", str(tmp_path / "browser"))
+    flexarm_program(tmp_path, "sweep", scene, "plan.yaml", "--workers", "1", "--quiet", "--show", "2", "--open")
+    assert (tmp_path / "opened").read_text().strip() == (tmp_path / "plan_results.html").as_uri()
+    assert "--show" in flexarm_program(tmp_path, "sweep", scene, "plan.yaml", "--open", status=2)
 
 
 BALL = """<robot name="ball"> <link name="world"/> <joint name="hinge" type="continuous"> <parent link="world"/>

@@ -11,7 +11,7 @@ import pytest
 vtk = pytest.importorskip("vtk", reason="Python's VTK is not installed (python3-vtk9, or python3-paraview)")
 from vtk.util.numpy_support import vtk_to_numpy  # noqa: E402
 
-PARTS = ("beams", "bodies", "wrenches")
+PARTS = ("beams", "bodies", "lines", "wrenches")
 HOSTILE = 'a<b>&"c"\'/../é'
 ESCAPED = "a&lt;b&gt;&amp;&quot;c&quot;'/../é"
 
@@ -63,7 +63,7 @@ def listed(path):
 
 def times_of(folder):
     entries = listed(folder / "run.pvd")
-    assert [name for _, name, _ in entries] == list(PARTS) * (len(entries) // 3)
+    assert [name for _, name, _ in entries] == list(PARTS) * (len(entries) // len(PARTS))
     return [when for when, name, _ in entries if name == "beams"]
 
 

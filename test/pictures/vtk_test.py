@@ -1,4 +1,4 @@
-"""Test what files for ParaView say of beams, bodies and wrenches."""
+"""Test what files for ParaView say of beams, bodies, springs and tendons, and wrenches."""
 
 import math
 import os
@@ -6,7 +6,8 @@ import os
 import numpy
 import pytest
 
-from vtk_reading import HOSTILE, array, line_of, part, positions, run, run_of_arm, texts, times_of, vtk, vtk_to_numpy
+from vtk_reading import (HOSTILE, array, line_of, part, positions, rows_of, run, run_of_arm, texts, times_of, vtk,
+                         vtk_to_numpy)
 
 import flexarm
 
@@ -210,6 +211,49 @@ def test_triangles_face_outwards(arm):
 def test_meshes_that_cannot_be_read_are_warnings(arm, tmp_path):
     printed = run(arm[2], tmp_path, "--until", 0.01)
     assert printed.count("link 'hand': the mesh 'file:///nowhere/none.stl' is not shown") == 1, printed
+
+
+# ---------------------------------------------------------------- springs and tendons
+
+
+def test_tendons_are_lines_with_their_tension(tmp_path):
+    scene = os.path.join(os.path.dirname(__file__), "..", "..", "config", "examples", "cable_robot.urdf")
+    run(scene, tmp_path / "vtk", "--until", 0.5, "--output", tmp_path / "rows.csv")
+    at_time = {row["time"]: row for row in rows_of(tmp_path / "rows.csv")}
+    largest = 0
+    for index, when in enumerate(times_of(tmp_path / "vtk")):
+        data, row = part(tmp_path / "vtk", "lines", index), at_time[when]
+        names = texts(data, "line_names")
+        assert len(names) == data.GetNumberOfLines() == 4 and set(texts(data, "line_kinds")) == {"tendon"}
+        assert array(data.GetCellData(), "line").tolist() == [0, 1, 2, 3]
+        for cell, name in enumerate(names):
+            points = positions(data)[line_of(data, cell)]
+            length = numpy.linalg.norm(numpy.diff(points, axis=0), axis=1).sum()
+            # Straight ropes; what the drums have wound up is not in the picture.
+            assert len(points) > 2 or length == pytest.approx(row["tendon/%s/length" % name], rel=1e-12)
+            for quantity in ("length", "tension"):
+                shown = array(data.GetCellData(), quantity)[cell]
+                assert shown == pytest.approx(row["tendon/%s/%s" % (name, quantity)], rel=1e-9, abs=1e-9), quantity
+            largest = max(largest, array(data.GetCellData(), "tension")[cell])
+    assert largest > 1
+
+
+SPRING = """<robot name="spring"> <link name="world"/>
+  <joint name="rail" type="prismatic"> <parent link="world"/> <child link="cart"/> <axis xyz="0 0 1"/>
+    <limit lower="-9" upper="9"/> </joint>
+  <link name="cart"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial>
+  </link>
+  <spring from="world" from_at="0 0 2" to="cart" to_at="0 0 0.5" stiffness="100" rest_length="1"/> </robot>"""
+
+
+def test_springs_between_points_are_lines(tmp_path):
+    (tmp_path / "spring.urdf").write_text(SPRING)
+    run(tmp_path / "spring.urdf", tmp_path / "vtk", "--until", 0)
+    data = part(tmp_path / "vtk", "lines", 0)
+    assert positions(data)[line_of(data, 0)].tolist() == [[0, 0, 2], [0, 0, 0.5]]
+    assert texts(data, "line_kinds") == ["spring"] and texts(data, "line_names") == [""]
+    assert array(data.GetCellData(), "length")[0] == pytest.approx(1.5, rel=1e-12)
+    assert array(data.GetCellData(), "tension")[0] == pytest.approx(100 * (1.5 - 1), rel=1e-12)
 
 
 # ---------------------------------------------------------------- wrenches

@@ -364,10 +364,15 @@ def test_files_that_cannot_be_used(folder):
     (folder / "fake.html").write_text('<script class="flexarm-picture">{}</script>')
     (folder / "bad.urdf").write_text("<robot")
     write_page(folder / "damaged.html", ball([[0, 0, 0]], [0.0]).replace("flexarm-motion\">", "flexarm-motion\">x"))
+    page = (folder / "ball.html").read_text()
+    for part in (0.3, 0.99):
+        (folder / ("cut_%g.html" % part)).write_text(page[:int(part * len(page))])
     for words, said in ((["none.html"], "cannot read 'none.html': No such file or directory"),
                         (["text.html"], "text.html: the page has no run; expected a page that `flexarm show` wrote"),
                         (["live.html"], "live.html: a live page has no run that could be filmed"),
                         (["fake.html"], "fake.html: the page is none of flexarm show"),
+                        (["cut_0.3.html"], "cut_0.3.html: the page is incomplete: it has lost its end"),
+                        (["cut_0.99.html"], "cut_0.99.html: the page is incomplete: it has lost its end"),
                         (["damaged.html"], "damaged.html: "), (["bad.urdf"], "bad.urdf"),
                         (["ball.html", "-o", "no/a.mp4"], "cannot write 'no/a.mp4': there is no folder 'no'"),
                         (["ball.html", "--", "--set", "a=1"], "options behind -- are for scenes, which are simulated")):

@@ -130,6 +130,28 @@ def test_errors_are_clear(folder, arguments, said):
     assert said in plot(folder, *arguments, status=2)
 
 
+def test_what_is_left_of_a_file_is_drawn_with_a_warning(tmp_path):
+    for name in ("run.h5", "run.csv"):
+        subprocess.run([os.environ["FLEXARM_PROGRAM"], "simulate", example("flexible_two_link_arm"), "--until", "2.2",
+                        "--output", tmp_path / name], check=True, stdout=subprocess.DEVNULL)
+        data = (tmp_path / name).read_bytes()
+        (tmp_path / ("cut_" + name)).write_bytes(data[:int(0.6 * len(data))])
+        (tmp_path / ("no_" + name)).write_bytes(data[:100])
+    for name, said in (("cut_run.h5", "cut_run.h5 has only "), ("cut_run.csv", "cut_run.csv: the last line has no ")):
+        result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "plot", name, "joint/*/position", "--output", "a.svg"],
+                                cwd=tmp_path, check=False, timeout=60, stderr=subprocess.PIPE, env=WITHOUT_DISPLAY)
+        assert result.returncode == 0 and result.stderr.decode().startswith("flexarm: plot: warning: " + said)
+        assert "joint/elbow/position" in [text.strip() for text in labels(tmp_path / "a.svg")]
+    said = plot(tmp_path, "no_run.h5", "joint/*/position", status=2)
+    assert "in which there are no rows" in said and "eof" not in said and "addr" not in said
+
+
+@pytest.mark.parametrize("content, said", [(b"", "it is empty"), (b"hello", "it is not an HDF5 file")])
+def test_hdf5_errors_are_sentences(tmp_path, content, said):
+    (tmp_path / "run.h5").write_bytes(content)
+    assert "run.h5: cannot be read: " + said in plot(tmp_path, "run.h5", "a", status=2)
+
+
 def test_a_picture_that_cannot_be_written_is_an_error(folder):
     said = plot(folder, "one.csv", "time", "--output", "none/a.png", status=1)
     assert said == "flexarm: plot: cannot write 'none/a.png': No such file or directory\n"

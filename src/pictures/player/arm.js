@@ -16,7 +16,7 @@
     constructor(link, beam, surface, isGhost, isClosed) {
       this.link = link;
       this.beam = beam;
-      const alpha = isGhost ? 0.22 : surface.alpha;
+      const alpha = isGhost ? 0.4 : surface.alpha;
       this.material = new THREE.MeshPhongMaterial({
         vertexColors: THREE.VertexColors, shininess: 24, specular: 0x1c1c1c, opacity: alpha, transparent: alpha < 1,
         depthWrite: alpha === 1, side: isClosed ? THREE.FrontSide : THREE.DoubleSide,
@@ -170,11 +170,13 @@
 
     // Colours beams by a quantity, or by their own colours (null). `largest`: where the scale ends.
     color(quantity, largest) {
-      this.beams.forEach((beam, b) => { if (beam && quantity) this.fillAmounts(beam, b, quantity); });
+      // A beam that does not have the quantity at all of its sections has its own colours.
+      const hasAmounts =
+        this.beams.map((beam, b) => Boolean(beam && quantity && !beam.isAtRest && this.fillAmounts(beam, b, quantity)));
       for (const part of this.parts) {
         if (!part.bend || !part.mesh.visible) continue;
         const { color } = part.mesh.geometry.attributes;
-        const isPlain = !quantity || this.beams[part.beam].isAtRest;
+        const isPlain = !hasAmounts[part.beam];
         if (isPlain && part.isPlain) continue;
         if (isPlain) color.array.set(part.plain);
         else colorBy(part.bend.along, this.beams[part.beam].amounts, quantity, largest, color.array);
@@ -182,6 +184,7 @@
         color.needsUpdate = true;
       }
     }
+    // Returns whether all amounts are known.
     fillAmounts(beam, b, quantity) {
       const { run } = this, { values, layout } = run, { parts } = beam.rest;
       const { radius, sections } = run.picture.beams[b];
@@ -196,6 +199,7 @@
         here = next;
       }
       beam.amounts[beam.amounts.length - 1] = here;
+      return !beam.amounts.some(Number.isNaN);
     }
 
     highlight(selected, hovered) {

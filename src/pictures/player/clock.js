@@ -2,7 +2,9 @@
 (function (P) {
   "use strict";
 
+  const ALL = "all";  // the value of the choice of all clips
   const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
+  const LEAST_SHOWN = 3;   // of real time that a clip is played before the next one [s]
   const LONGEST_STEP = 1;  // of real time between two pictures [s]; a page that was hidden goes on where it was
 
   class Clock {
@@ -13,6 +15,8 @@
       this.time = this.start = this.end = 0;
       this.speed = 1;
       this.clip = -1;
+      this.isTour = false;      // all clips, one after the other
+      this.shownFor = 0;        // how long the clip has been played, of real time [s]
       this.isPlaying = this.isLooping = false;
       this.isLive = false;      // the runs come from a server
       this.isFollowing = true;  // a live page shows the newest instant
@@ -32,7 +36,10 @@
       P.byId("loop").onclick = () => this.setLooping(!this.isLooping);
       P.byId("live").onclick = () => this.goLive();
       this.slider.oninput = () => this.seek(this.start + this.slider.value / this.slider.max * (this.end - this.start));
-      P.byId("clips").onchange = (event) => this.setClip(event.target.selectedIndex);
+      P.byId("clips").onchange = ({ target }) => {
+        const isTour = target.value === ALL;
+        this.setClip(isTour ? 0 : Number(target.value), isTour);
+      };
     }
 
     setRuns(runs) {
@@ -40,19 +47,25 @@
       this.isLive = runs.some((run) => run.isLive);
       this.leader = Math.max(runs.findIndex((run) => run.picture.clips.length), 0);
       const clips = runs.length ? runs[this.leader].picture.clips : [];
-      P.byId("clips").replaceChildren(...clips.map((clip) => P.make("option", {}, clip.name)));
+      const isTour = clips.length > 1 && clips.some((clip) => clip.count > 1);
+      P.byId("clips").replaceChildren(...(isTour ? [P.make("option", { value: ALL }, "All, one after the other")] : []),
+        ...clips.map((clip, k) => P.make("option", { value: k }, clip.name)));
       P.byId("clip-chooser").hidden = !clips.length;
       P.byId("live").hidden = !this.isLive;
       P.byId("loop").hidden = this.isLive;
       if (clips.length) this.setLooping(true);
       this.pause();
-      this.setClip(clips.length ? 0 : -1);
+      this.setClip(clips.length ? 0 : -1, isTour);
     }
-    setClip(clip) {
-      this.clip = clip;
-      if (clip >= 0) P.byId("clips").selectedIndex = clip;
-      this.findParts();
+    setClip(clip, isTour = false) {
+      this.useClip(clip, isTour);
       this.seek(this.start, true);
+    }
+    useClip(clip, isTour) {
+      Object.assign(this, { clip, isTour, shownFor: 0 });
+      P.byId("clips").value = isTour ? ALL : clip;
+      P.setText(P.byId("clip-name"), isTour ? this.runs[this.leader].picture.clips[clip].name : "");
+      this.findParts();
     }
     // The part of each run that is shown: its first and last instant, and how far its times are ahead of the clock.
     findParts() {
@@ -99,7 +112,7 @@
       const { picture, store } = this.runs[this.leader];
       const clip = picture.clips.findIndex(({ first, count }) =>
         time >= store.time(first) && time <= store.time(first + count - 1));
-      if (clip >= 0 && clip !== this.clip) { this.clip = clip; P.byId("clips").selectedIndex = clip; this.findParts(); }
+      if (clip >= 0 && clip !== this.clip) this.useClip(clip, this.isTour);
     }
     // To the next instant of any run.
     step(way) {
@@ -136,14 +149,25 @@
     advance(seconds) {
       const length = this.end - this.start;
       let time = this.time + this.speed * Math.min(seconds, LONGEST_STEP);
+      this.shownFor += Math.min(seconds, LONGEST_STEP);
       if (time >= this.end) {
-        if (this.isLooping && length > 0) time = this.start + (time - this.start) % length;
+        if (this.isTour && this.shownFor >= LEAST_SHOWN && this.goToNextClip()) return;
+        if ((this.isLooping || this.mustRepeat) && length > 0) time = this.start + (time - this.start) % length;
         else if (this.isLive) { this.goLive(); return; }
         else { time = this.end; this.isPlaying = false; }
       }
       this.time = time;
       this.showState();
       this.on.time();
+    }
+    // Of a tour: each clip is played for a while, also if the page does not begin anew at the end.
+    get mustRepeat() { return this.isTour && this.shownFor < LEAST_SHOWN; }
+    // Returns whether there is one.
+    goToNextClip() {
+      const { clips } = this.runs[this.leader].picture, next = this.clip + 1;
+      if (next >= clips.length && !this.isLooping) return false;
+      this.setClip(next % clips.length, true);
+      return true;
     }
     get canMove() { return this.end > this.start; }
 

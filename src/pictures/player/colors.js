@@ -50,10 +50,12 @@
     return part >= 1 ? LEVELS - 1 : part > 0 ? Math.round(part * (LEVELS - 1)) : 0;
   }
 
+  const UNKNOWN = -1;  // no beam has this quantity at any time
+
   // The largest amounts in a run: of each quantity, and of forces and moments that arrows stand for.
   class Largest {
     constructor() {
-      this.amounts = Object.fromEntries(quantities.map((quantity) => [quantity.key, 0]));
+      this.amounts = Object.fromEntries(quantities.map((quantity) => [quantity.key, UNKNOWN]));
       this.force = this.moment = 0;
     }
     // `before`: the values of the instant before, or null; `step`: the time between them.
@@ -63,7 +65,7 @@
         for (let k = 0; k < beam.sections.length; ++k) {
           const at = layout.beams[b] + P.SECTION * k;
           for (const { key, value } of quantities) {
-            const now = value ? Math.abs(value(values, at, beam.radius)) : before ? speed(values, before, at, step) : 0;
+            const now = value ? Math.abs(value(values, at, beam.radius)) : before ? speed(values, before, at, step) : NaN;
             if (now > amounts[key]) amounts[key] = now;
           }
         }
@@ -87,12 +89,14 @@
   const speed = (now, before, at, step) =>
     (step > 0 ? norm(now[at] - before[at], now[at + 1] - before[at + 1], now[at + 2] - before[at + 2]) / step : 0);
 
-  function largestOf(run) {
+  // Over some instants of a run.
+  function largestOf(run, first, last) {
     const largest = new Largest(), { store } = run;
     let values = new Float64Array(run.layout.count), before = new Float64Array(run.layout.count);
-    for (let instant = 0; instant < store.count; ++instant) {
+    for (let instant = first; instant <= last; ++instant) {
       run.sampleInto(values, instant, 0);
-      largest.note(run, values, instant ? before : null, instant ? store.time(instant) - store.time(instant - 1) : 0);
+      const isFirst = instant === first;
+      largest.note(run, values, isFirst ? null : before, isFirst ? 0 : store.time(instant) - store.time(instant - 1));
       [values, before] = [before, values];
     }
     return largest;
@@ -101,7 +105,7 @@
   // Velocity of a section at the instant that a run shows, between the instants around it [m/s].
   function sectionSpeed(run, at) {
     const { store } = run;
-    if (store.count < 2) return 0;
+    if (store.count < 2) return NaN;
     const next = Math.min(run.instant + 1, store.count - 1), here = next - 1;
     let square = 0;
     for (let c = 0; c < 3; ++c) square += (store.value(at + c, next) - store.value(at + c, here)) ** 2;

@@ -3,7 +3,7 @@
   "use strict";
 
   const POSE = 7, SECTION = 19, ARROW = 9;
-  const MISSING = 65535, STEPS = 65534;
+  const MISSING = 65535, STEPS = 65534, ROUND_OFF = 1e-9;
 
   // ---------------------------------------------------------------- the picture
 
@@ -160,6 +160,11 @@
       if (slot < 0) return this.low[track];
       const step = this.steps[instant * this.tracks.length + slot];
       return step === MISSING ? NaN : this.low[track] + this.step[track] * step;
+    }
+    // How much a track changes; what is only round-off counts as none.
+    range(track) {
+      const range = this.slot[track] < 0 ? 0 : this.step[track] * STEPS;
+      return range > ROUND_OFF * Math.max(1, Math.abs(this.low[track])) ? range : 0;
     }
     // All values between an instant and the next one.
     sample(instant, part, values) {

@@ -29,32 +29,44 @@
       [areDifferent ? shorts[k] : columns[column].name, run.values[run.layout.columns[column]], columns[column].unit]);
   }
 
-  // A beam's numbers at a number of sections from its root, such as 2.5.
-  function sectionRows(run, b, section) {
+  // A beam at a number of sections from its root, such as 2.5: {arcLength, numbers, edgeStrain}; `numbers` are those of
+  // a section.
+  function sectionAt(run, b, section) {
     const beam = run.picture.beams[b], first = Math.min(Math.floor(section), beam.sections.length - 2);
-    const part = section - first, { values } = run;
-    const at = run.layout.beams[b] + P.SECTION * first, mixed = new Float64Array(P.SECTION);
-    for (let k = 0; k < P.SECTION; ++k)
-      mixed[k] = values[at + k] + (values[at + P.SECTION + k] - values[at + k]) * part;
-    const [s, next] = [beam.arcLengths[first], beam.arcLengths[first + 1]];
+    const part = section - first, { values } = run, numbers = new Float64Array(P.SECTION);
+    const at = run.layout.beams[b] + P.SECTION * first, next = at + P.SECTION;
+    let dot = 0;
+    for (let k = 3; k < P.POSE; ++k) dot += values[at + k] * values[next + k];
+    for (let k = 0; k < P.SECTION; ++k) {
+      const sign = dot < 0 && k >= 3 && k < P.POSE ? -1 : 1;
+      numbers[k] = part ? values[at + k] + (sign * values[next + k] - values[at + k]) * part : values[at + k];
+    }
+    const length = Math.hypot(...numbers.subarray(3, P.POSE));
+    for (let k = 3; k < P.POSE; ++k) numbers[k] /= length;
+    const [s, end] = [beam.arcLengths[first], beam.arcLengths[first + 1]];
+    return { arcLength: s + (end - s) * part, numbers, edgeStrain: P.edgeStrain(numbers, 0, beam.radius) };
+  }
+  function sectionRows(run, b, section) {
+    const { arcLength, numbers, edgeStrain } = sectionAt(run, b, section);
     return [
-      ["arc length", s + (next - s) * part, "m"], ["edge strain", 100 * P.edgeStrain(mixed, 0, beam.radius), "%"],
-      ...STRAINS.map(([name, unit], k) => [name, mixed[P.POSE + k], unit]),
-      ...RESULTANTS.map(([name, unit], k) => [name, mixed[P.POSE + 6 + k], unit]),
+      ["arc length", arcLength, "m"], ["edge strain", 100 * edgeStrain, "%"],
+      ...STRAINS.map(([name, unit], k) => [name, numbers[P.POSE + k], unit]),
+      ...RESULTANTS.map(([name, unit], k) => [name, numbers[P.POSE + 6 + k], unit]),
     ];
   }
   function beamRows(run, b) {
     const beam = run.picture.beams[b];
-    let most = 0, place = 0;
+    let most = NaN, place = NaN;
     beam.sections.forEach((_, k) => {
       const strain = P.edgeStrain(run.values, run.layout.beams[b] + P.SECTION * k, beam.radius);
-      if (strain > most) { most = strain; place = beam.arcLengths[k]; }
+      if (!Number.isNaN(strain) && !(strain <= most)) { most = strain; place = beam.arcLengths[k]; }
     });
     return [["largest edge strain", 100 * most, "%"], ["… at arc length", place, "m"]];
   }
 
-  // `selection`: {run, link, joint}; a joint if that is not -1.
-  function selectionOf(runs, { run: r, link, joint }) {
+  // `selection`: {run, link, joint, section}; a joint if that is not -1; else `section` is the place on a beam that was
+  // clicked, or -1.
+  function selectionOf(runs, { run: r, link, joint, section }) {
     const run = runs[r], { picture } = run;
     if (joint >= 0) {
       const { name, kind } = picture.joints[joint];
@@ -63,13 +75,48 @@
     const { name, beam } = picture.links[link];
     const rows = poseRows(run.values, run.layout.links[link]);
     return beam < 0 ? { name, kind: "rigid link", rows }
-      : { name, kind: "flexible link", rows: [...beamRows(run, beam), ...rows] };
+      : { name, kind: "flexible link",
+        rows: [...(section >= 0 ? sectionRows(run, beam, section) : []), ...beamRows(run, beam), ...rows] };
+  }
+
+  // Names of the numbers of a section, as in results.
+  const SECTION_COLUMNS = ["x [m]", "y [m]", "z [m]", "qx [1]", "qy [1]", "qz [1]", "qw [1]", "ex [1]", "ey [1]", "ez [1]",
+    "kx [1/m]", "ky [1/m]", "kz [1/m]", "fx [N]", "fy [N]", "fz [N]", "mx [N m]", "my [N m]", "mz [N m]"];
+
+  // What is copied of a selection, as rows of CSV: its numbers, or of a beam a row for each section, after one for the
+  // place that was clicked.
+  function tableOf(runs, selection, time) {
+    const { run: r, link, joint, section } = selection, run = runs[r], { name, beam } = run.picture.links[link];
+    if (joint >= 0 || beam < 0) {
+      const { name: shown, rows } = selectionOf(runs, selection);
+      return [["name", "quantity", "value", "unit"], ...[["time", time, "s"], ...rows].map((row) => [shown, ...row])];
+    }
+    const row = (place, at) => {
+      const { arcLength, numbers, edgeStrain } = sectionAt(run, beam, at);
+      return [name, place, time, arcLength, edgeStrain, ...numbers].map((value) => (Number.isNaN(value) ? "nan" : value));
+    };
+    return [
+      ["name", "place", "time [s]", "arc_length [m]", "edge_strain [1]", ...SECTION_COLUMNS],
+      ...(section >= 0 ? [row("clicked", section)] : []),
+      ...run.picture.beams[beam].sections.map((_, k) => row(`section ${k}`, k)),
+    ];
+  }
+
+  // Joints at one place.
+  function jointsOf(run, indices) {
+    const joints = indices.map((index) => run.picture.joints[index]), isOne = joints.length === 1;
+    return {
+      name: joints.map((joint) => joint.name).join(", "),
+      kind: isOne ? `${joints[0].kind || "unknown"} joint` : "joints",
+      rows: joints.flatMap((joint) => jointRows(run, joint)
+        .map(([label, ...rest]) => [isOne ? label : `${joint.name} ${label}`, ...rest])),
+    };
   }
 
   // What the pointer is over: `hit` as Stage.pick() returns it.
   function hitOf(runs, hit) {
     const run = runs[hit.run], { picture } = run;
-    if (hit.joint >= 0) return selectionOf(runs, hit);
+    if (hit.joint >= 0) return jointsOf(run, hit.joints);
     const { name } = picture.links[hit.link];
     if (hit.beam >= 0) return { name, kind: "beam", rows: sectionRows(run, hit.beam, hit.section) };
     const carrying = picture.joints.filter((joint) => joint.link === hit.link);
@@ -82,5 +129,5 @@
     };
   }
 
-  Object.assign(P, { selectionOf, hitOf });
+  Object.assign(P, { selectionOf, tableOf, hitOf });
 })(window.Player = window.Player || {});

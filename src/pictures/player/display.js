@@ -8,6 +8,7 @@
     ["effort", null], ["load", null], ["reaction", null], ["contact", null], ["probes", "Probes"],
     ["trails", "Trails of probes"], ["lines", "Springs and tendons"]
   ];
+  const LEGEND_EDGE = 10;  // from the legend to the edge of the picture [pixels]
   const AT_START = ["grid", "world", "still", "load", "contact", "probes", "trails", "lines"];
   const THEMES = {
     light: { background: "#edf0f4", grid: "#a9b1bd", ground: "#c3cad4", text: "#1d2129" },
@@ -15,7 +16,7 @@
   };
 
   class Display {
-    // `page`: {stage, redraw()}; the stage may be null.
+    // `page`: {stage, redraw(), keepClear(width)}; the stage may be null. Several runs stay clear of the legend.
     constructor(page) {
       this.page = page;
       this.shown = new Set(AT_START);
@@ -85,13 +86,14 @@
     }
     showLegend() {
       const { stage } = this.page;
-      if (stage)
-        P.showLegend(byId("legend"), stage.quantity, stage.largest,
-          this.kinds.filter((kind) => this.shown.has(kind)).map((kind) => P.arrowKinds[kind]));
+      if (!stage) return;
+      P.showLegend(byId("legend"), stage.quantity, stage.largest,
+        this.kinds.filter((kind) => this.shown.has(kind)).map((kind) => P.arrowKinds[kind]));
+      this.page.keepClear(byId("legend").hidden ? 0 : byId("legend").offsetWidth + 2 * LEGEND_EDGE);
     }
     get legend() {
       const { quantity, largest } = this.page.stage;
-      return quantity ? P.legendOf(quantity, largest.amounts[quantity.key]) : null;
+      return P.legendOf(quantity, largest);
     }
     setTheme(theme) {
       document.documentElement.dataset.theme = theme;

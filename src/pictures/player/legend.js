@@ -4,8 +4,11 @@
 
   const TICKS = 4;
 
-  // {title, stops, ticks} of a quantity; a tick has its part of the bar's height and its number.
-  function legendOf(quantity, largest) {
+  // {title, stops, ticks} of a quantity, or null if no beam has it; a tick has its part of the bar's height and its
+  // number.
+  function legendOf(quantity, { amounts }) {
+    const largest = quantity ? amounts[quantity.key] : -1;
+    if (!(largest >= 0)) return null;
     const end = Math.max(largest, quantity.least) * quantity.factor, low = quantity.signed ? -end : 0;
     const step = P.niceStep(end - low, TICKS), ticks = [];
     for (let k = Math.ceil(low / step); k * step <= end * (1 + 1e-9); ++k) {
@@ -15,7 +18,7 @@
   }
 
   function showLegend(element, quantity, largest, arrows) {
-    const legend = quantity ? legendOf(quantity, largest.amounts[quantity.key]) : null;
+    const legend = legendOf(quantity, largest);
     const key = JSON.stringify([legend, arrows.map((arrow) => arrow.name), largest.force, largest.moment]);
     if (element.dataset.key === key) return;
     element.dataset.key = key;
@@ -45,17 +48,54 @@
     element.hidden = !element.childElementCount;
   }
 
+  const textSize = (width, height) => Math.max(11, Math.round(Math.min(width, height) / 36));
+  // The width of the colour bar in a captured picture.
+  const overlayMargin = (width, height) => 9 * textSize(width, height);
+
+  // The lines of a text in a width, at most `most`; what is cut has an ellipsis.
+  function wrapped(context, text, width, most) {
+    const fits = (line) => context.measureText(line).width <= width, lines = [];
+    let line = "";
+    for (const word of text.split(/(?<=\s)/).flatMap((part) => pieces(part, fits))) {
+      if (line && !fits((line + word).trimEnd())) { lines.push(line.trimEnd()); line = ""; }
+      line += word;
+    }
+    if (line) lines.push(line.trimEnd());
+    if (lines.length > most) {
+      let last = lines[most - 1];
+      while (last && !fits(`${last}…`)) last = last.slice(0, -1);
+      lines.splice(most - 1, lines.length, `${last}…`);
+    }
+    return lines;
+  }
+  // A word that is too long is broken.
+  function pieces(word, fits) {
+    const out = [];
+    let rest = word;
+    while (!fits(rest.trimEnd())) {
+      let count = 1;
+      while (count < rest.length && fits(rest.slice(0, count + 1))) ++count;
+      out.push(rest.slice(0, count));
+      rest = rest.slice(count);
+    }
+    return rest ? [...out, rest] : out;
+  }
+
   // Draws caption, names of runs, time and colour bar over a captured picture.
   function drawOverlay(context, { width, height, caption, time, legend, names, colors }) {
-    const size = Math.max(11, Math.round(Math.min(width, height) / 36)), gap = size;
+    const size = textSize(width, height), gap = size, line = 1.3 * size;
     context.fillStyle = colors.text;
     context.textBaseline = "top";
     context.font = `600 ${Math.round(1.25 * size)}px ${FONT}`;
-    if (caption) context.fillText(caption, gap, gap, width - 2 * gap);
+    let y = gap;
+    for (const text of wrapped(context, caption, width - 2 * gap, 3)) { context.fillText(text, gap, y); y += 1.7 * size; }
     context.font = `${size}px ${FONT}`;
-    context.fillText(time, gap, gap + (caption ? 1.7 * size : 0));
-    for (const cell of names)
-      context.fillText(cell.name, cell.x + gap, cell.y + cell.height - 2 * size, cell.width / 2);
+    context.fillText(time, gap, y);
+    for (const cell of names) {
+      const lines = wrapped(context, cell.name, cell.width - 2 * gap, 3);
+      lines.forEach((text, k) =>
+        context.fillText(text, cell.x + gap, cell.y + cell.height - 0.7 * size - line * (lines.length - k)));
+    }
     if (!legend) return;
     const tall = Math.round(0.3 * height), wide = size, right = width - gap - 5 * size, top = height - gap - tall;
     const gradient = context.createLinearGradient(0, top + tall, 0, top);
@@ -73,5 +113,5 @@
   }
   const FONT = "system-ui, sans-serif";
 
-  Object.assign(P, { legendOf, showLegend, drawOverlay });
+  Object.assign(P, { legendOf, showLegend, drawOverlay, overlayMargin });
 })(window.Player = window.Player || {});

@@ -22,6 +22,7 @@
     get count() { return this.instants.length - this.first; }
     time(instant) { return this.clock[this.first + instant]; }
     value(track, instant) { return this.instants[this.first + instant][track]; }
+    range() { return Infinity; }  // may still change
     add(time, values) {
       if (this.count && time <= this.time(this.count - 1)) this.clear();  // the simulation began anew
       this.instants.push(values);

@@ -228,7 +228,7 @@
       this.probes = picture.probes.map((probe, p) => {
         const mesh = new THREE.Mesh(ball, this.probeMaterial), trail = new Trail(layout.probes[p]);
         this.root.add(mesh, trail.line);
-        return { mesh, trail, at: layout.probes[p] };
+        return { mesh, trail, link: probe.link, at: layout.probes[p] };
       });
     }
     addGrounds(picture, up) {
@@ -265,15 +265,17 @@
       for (const { kind, arrows } of this.arrows) arrows.group.visible = shown.has(kind);
       for (const { line } of this.lines) line.rods.visible = shown.has("lines");
       this.hasProbes = shown.has("probes");
-      for (const { trail } of this.probes) trail.line.visible = shown.has("trails");
+      this.hasTrails = shown.has("trails");
     }
-    place(values, largest, seconds, first, last) {
+    // `hidden`: links that are not shown, nor their probes.
+    place(values, largest, seconds, first, last, hidden) {
       for (const { arrows, at } of this.arrows) if (arrows.group.visible) arrows.place(this.run, at, largest, last);
       for (const { line, at } of this.lines) if (line.rods.visible) line.place(values, at);
-      for (const { mesh, trail, at } of this.probes) {
+      for (const { mesh, trail, link, at } of this.probes) {
         const isKnown = !Number.isNaN(values[at] + values[at + 1] + values[at + 2]);
         if (isKnown) mesh.position.set(values[at], values[at + 1], values[at + 2]);
-        mesh.visible = isKnown && this.hasProbes;
+        mesh.visible = isKnown && this.hasProbes && !hidden.has(link);
+        trail.line.visible = this.hasTrails && !hidden.has(link);
         if (trail.line.visible) trail.place(this.run, seconds, first, last);
       }
     }

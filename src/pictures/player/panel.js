@@ -143,9 +143,7 @@
     }
     async copy(button) {
       if (!this.selection) return;
-      const { name, rows } = P.selectionOf(this.runs, this.selection);
-      const time = ["time", this.time, "s"];
-      await P.copy(P.csv([["name", "quantity", "value", "unit"], ...[time, ...rows].map((row) => [name, ...row])]));
+      await P.copy(P.csv(P.tableOf(this.runs, this.selection, this.time)));
       flash(button);
     }
   }

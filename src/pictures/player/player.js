@@ -5,11 +5,12 @@
   const PANEL_PERIOD = 80, HOVER_PERIOD = 60, LIVE_PLOT_PERIOD = 300;  // [ms]
   const TRAIL = 0.15, SHORTEST_TRAIL = 0.5, LONGEST_TRAIL = 10;  // of the run's length; [s]
   const QUIET = 250;  // [ms] after a captured picture: who takes one often takes many, and each size costs time
+  const WIDEST_MARGIN = 0.25;  // beside several runs, for the legend, per width of the picture
   const CLICK = 5;  // pixels that the pointer may move between down and up
 
-  const byId = P.byId, errors = [];
+  const byId = P.byId, errors = [], largest = new Map();  // of parts of runs
   let runs = [], selection = null, hovered = null, stage = null, isWaiting = false, isMoved = true;
-  let lastTick = 0, quietUntil = 0, lastPanel = 0, livePlot = 0, lastRange = null;
+  let legendWidth = 0, lastTick = 0, quietUntil = 0, lastPanel = 0, livePlot = 0, lastRange = null;
   const canvas = byId("canvas");
 
   // ---------------------------------------------------------------- errors
@@ -76,6 +77,7 @@
     time() { isMoved = true; redraw(); },
     playing() { redraw(); },
     parts() {
+      if (!clock.isLive) findLargest();
       const range = `${clock.start} ${clock.end} ${clock.clip}`;
       if (range === lastRange || livePlot) return;
       lastRange = range;
@@ -83,6 +85,17 @@
       else drawPlots();
     },
   });
+  // Of the parts that are shown, so that each mode has its own scale.
+  function findLargest() {
+    if (!stage) return;
+    stage.largest = new P.Largest();
+    clock.parts.forEach(({ first, last }, r) => {
+      const key = `${r} ${first} ${last}`;
+      if (!largest.has(key)) largest.set(key, P.largestOf(runs[r], first, last));
+      stage.largest.add(largest.get(key));
+    });
+    display.showLegend();
+  }
   const drawPlots = () => plots.setRange(clock, clock.parts);
   const plots = P.plots = new P.Plots({
     seek: (time) => clock.seek(time),
@@ -102,7 +115,8 @@
   // ---------------------------------------------------------------- selection
 
   function select(thing) {
-    selection = thing ? { run: thing.run, link: thing.link, joint: thing.joint } : null;
+    const section = thing && thing.beam >= 0 ? thing.section : -1;
+    selection = thing ? { run: thing.run, link: thing.link, joint: thing.joint, section } : null;
     panel.select(selection);
     if (stage) stage.highlight(selection, hovered);
     redraw();
@@ -146,7 +160,8 @@
     canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") setHover(null); });
   }
   function setHover(hit, event) {
-    const isChanged = (hit ? `${hit.run} ${hit.link}` : "") !== (hovered ? `${hovered.run} ${hovered.link}` : "");
+    const nameOf = (thing) => (thing ? `${thing.run} ${thing.link}` : "");
+    const isChanged = nameOf(hit) !== nameOf(hovered);
     hovered = hit;
     byId("tip").hidden = !hit;
     if (isChanged) stage.highlight(selection, hovered);
@@ -168,13 +183,13 @@
 
   function useRuns(newRuns) {
     runs = newRuns;
+    largest.clear();
     const [first] = runs;
     const title = first ? first.label : "flexarm";
     document.title = `${title} – flexarm`;
     P.setText(byId("title"), runs.length > 1 ? `${title} and ${runs.length - 1} more` : title);
     if (stage) {
       stage.largest = new P.Largest();
-      for (const run of runs) stage.largest.add(P.largestOf(run));
       stage.setRuns(runs);
     }
     P.showNotes(runs);
@@ -191,15 +206,18 @@
   }
   function measure() {
     const { clientWidth, clientHeight } = byId("picture");
-    if (clientWidth && clientHeight) stage.resize(clientWidth, clientHeight, Math.min(window.devicePixelRatio || 1, 2));
+    const margin = Math.min(legendWidth, WIDEST_MARGIN * clientWidth);
+    if (clientWidth && clientHeight)
+      stage.resize(clientWidth, clientHeight, Math.min(window.devicePixelRatio || 1, 2), margin);
     nameCells();
   }
   function nameCells() {
     if (!stage) return;
     byId("cells").replaceChildren(...(runs.length > 1 ? runs : []).map((run, r) => {
       const { x, y, width, height } = stage.cell(r);
-      const label = P.make("div", { class: "cell-name", dir: "auto" }, run.label);
-      Object.assign(label.style, { left: `${x}px`, top: `${y + height - 40}px`, maxWidth: `${width / 2}px` });
+      const label = P.make("div", { class: "cell-name", dir: "auto", title: run.label }, P.make("span", {}, run.label));
+      Object.assign(
+        label.style, { left: `${x}px`, bottom: `${byId("picture").clientHeight - y - height}px`, maxWidth: `${width}px` });
       return label;
     }));
   }
@@ -207,6 +225,11 @@
   const display = new P.Display({
     get stage() { return stage; },
     redraw() { isMoved = true; redraw(); },
+    keepClear(width) {
+      if (width === legendWidth) return;
+      legendWidth = width;
+      measure();
+    },
     follow: () => follow(selection),
   });
 
@@ -255,11 +278,12 @@
       if (!stage) { reject(new Error("This browser cannot draw in three dimensions.")); return; }
       if (isMoved) place();
       const picture = P.make("canvas", { width, height }), context = picture.getContext("2d");
-      stage.drawAt(width, height, (drawn) => {
+      const { legend } = display;
+      stage.drawAt(width, height, legend ? P.overlayMargin(width, height) : 0, (drawn) => {
         context.drawImage(drawn, 0, 0, width, height);
         const names = runs.length > 1 ? runs.map((run, r) => ({ name: run.label, ...stage.cell(r) })) : [];
         P.drawOverlay(context, { width, height, caption: String(caption), time: `t = ${clock.text}`, names,
-          legend: display.legend, colors: stage.theme });
+          legend, colors: stage.theme });
       });
       quietUntil = performance.now() + QUIET;
       redraw();

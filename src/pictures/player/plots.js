@@ -5,7 +5,7 @@
   const COLORS = ["#4c7fd9", "#e0813c", "#36a074", "#cf5585", "#8d68cf", "#b3901f", "#25a1b5", "#80858e"];
   const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3]];  // one for each run
   const LEFT = 64, RIGHT = 14, TOP = 8, BOTTOM = 22, HEIGHT = 132;
-  const MOST_LISTED = 150, CHOSEN_AT_START = 4;
+  const MOST_LISTED = 150, CHOSEN_AT_START = 4, ZERO = 1e-12;
 
   class Plots {
     // on: {seek(time), changed()}
@@ -227,13 +227,28 @@
   const textOf = (value) => (Number.isNaN(value) ? "nan" : Number(value.toPrecision(9)));
   const unitText = (unit) => (unit && unit !== "-" ? unit : "–");
 
+  // Positions of joints or places of probes, or else all columns: those that change with time or, if none does, that are
+  // not zero.
   function firstColumns(runs) {
     if (!runs.length) return [];
-    const { joints, columns } = runs[0].picture;
-    const ofJoints = joints.filter((joint) => joint.columns.length).map((joint) => columns[joint.columns[0]].name);
-    const names = columns.map((column) => column.name);
-    const first = ofJoints.length ? ofJoints : names.filter((name) => /^probe\/.*\/[xyz]$/.test(name));
-    return [...new Set(first.length ? first : names.filter((name) => name !== "time"))].slice(0, CHOSEN_AT_START);
+    const { joints, columns } = runs[0].picture, names = columns.map((column) => column.name);
+    const ofJoints = joints.flatMap((joint) => joint.columns).map((column) => names[column]);
+    const places = [
+      ofJoints.filter((name) => name.endsWith("/position")), names.filter((name) => /^probe\/.*\/[xyz]$/.test(name)),
+    ];
+    const tests = [(track, store) => store.range(track) > 0, (track, store) => Math.abs(store.value(track, 0)) > ZERO, () => true];
+    const rest = [names.filter((name) => name !== "time")];
+    const tries = [[places, 0], [places, 1], [rest, 0], [rest, 1], [rest, 2]];
+    for (const [kinds, number] of tries) {
+      const test = tests[number];
+      const passes = (name) => runs.some(({ picture, layout, store }) => {
+        const column = picture.columns.findIndex((other) => other.name === name);
+        return column >= 0 && (!store.count || test(layout.columns[column], store));
+      });
+      const chosen = kinds.map((kind) => kind.filter(passes)).find((kind) => kind.length);
+      if (chosen) return [...new Set(chosen)].slice(0, CHOSEN_AT_START);
+    }
+    return [];
   }
 
   function drawAxes(context, box, { x, y, low, high, start, end, unit, colors }) {

@@ -6,6 +6,7 @@
   const START_DIRECTION = [0.55, -0.75, 0.36];  // from the scene to the camera, if up is z
   const FIT = 1.04;
   const ACROSS = 1.2;  // the best ratio of a run's width to its height
+  const NEAR = 9;      // so far from the pointer a joint is found [CSS pixels]
 
   class Stage {
     // `redraw()` asks for a new picture.
@@ -23,6 +24,7 @@
       this.quantity = null;
       this.largest = new P.Largest();
       this.followed = null;  // {run, link}
+      this.margin = 0;       // at the right, which several runs leave free [CSS pixels]
       this.setRuns([]);
     }
 
@@ -124,14 +126,14 @@
     // ---------------------------------------------------------------- drawing
 
     // Sizes are in CSS pixels.
-    resize(width, height, ratio) {
-      if (width === this.width && height === this.height && ratio === this.ratio) return;
-      this.setSize(width, height, ratio);
+    resize(width, height, ratio, margin) {
+      if (width === this.width && height === this.height && ratio === this.ratio && margin === this.margin) return;
+      this.setSize(width, height, ratio, margin);
       this.redraw();
     }
     // `ratio`: pixels of the screen in one of CSS.
-    setSize(width, height, ratio) {
-      Object.assign(this, { width, height, ratio });
+    setSize(width, height, ratio, margin) {
+      Object.assign(this, { width, height, ratio, margin });
       if (this.isFitted) this.refit();
     }
     // The canvas gets its size when it is drawn, since a new size takes new memory.
@@ -142,13 +144,14 @@
       renderer.setPixelRatio(ratio);
       renderer.setSize(width, height, false);
     }
+    get room() { return this.views.length > 1 ? this.width - this.margin : this.width; }
     // The grid in which runs are largest; of two such grids, the one with fewer empty places.
     get columns() {
       const count = Math.max(this.views.length, 1);
       let best = 1, most = 0;
       for (let columns = count; columns >= 1; --columns) {
         const rows = Math.ceil(count / columns), empty = rows * columns - count;
-        const size = Math.min(this.width / columns / ACROSS, this.height / rows) * (1 - 0.01 * empty);
+        const size = Math.min(this.room / columns / ACROSS, this.height / rows) * (1 - 0.01 * empty);
         if (size > most) { most = size; best = columns; }
       }
       return best;
@@ -156,7 +159,7 @@
     // Where a run is in the canvas, from its upper left corner.
     cell(run) {
       const columns = this.columns, rows = Math.ceil(Math.max(this.views.length, 1) / columns);
-      const width = this.width / columns, height = this.height / rows;
+      const width = this.room / columns, height = this.height / rows;
       return { x: (run % columns) * width, y: Math.floor(run / columns) * height, width, height };
     }
     get aspect() {
@@ -168,7 +171,7 @@
     place(parts, seconds) {
       this.views.forEach(({ run, arm, marks }, r) => {
         arm.place(run.values);
-        marks.place(run.values, this.largest, seconds, parts[r].first, parts[r].last);
+        marks.place(run.values, this.largest, seconds, parts[r].first, parts[r].last, arm.hidden);
       });
       this.colorBeams();
       this.moveWithFollowed();
@@ -197,10 +200,10 @@
       });
     }
     // Draws at another size and calls `use(canvas)`. The next draw() is as before.
-    drawAt(width, height, use) {
-      const before = [this.width, this.height, this.ratio];
+    drawAt(width, height, margin, use) {
+      const before = [this.width, this.height, this.ratio, this.margin];
       const position = this.camera.position.clone(), isFitted = this.isFitted;
-      this.setSize(width, height, 1);
+      this.setSize(width, height, 1, margin);
       this.draw();
       use(this.canvas);
       this.setSize(...before);
@@ -238,16 +241,30 @@
       const point = new THREE.Vector3(...position).project(this.camera);
       return [x + (point.x + 1) / 2 * width, y + (1 - point.y) / 2 * height];
     }
-    // What is at a point of the canvas: {run, link, joint, part, section}, or null.
+    // What is at a point of the canvas: {run, link, joint, joints, beam, section}, or null. `joints`: all at that place.
     pick(px, py) {
       for (let r = 0; r < this.views.length; ++r) {
         const { x, y, width, height } = this.cell(r);
         if (px < x || py < y || px >= x + width || py >= y + height) continue;
         pointer.set((px - x) / width * 2 - 1, 1 - (py - y) / height * 2);
         this.ray.setFromCamera(pointer, this.camera);
-        return this.pickIn(r);
+        return this.pickJoint(r, px, py) || this.pickIn(r);
       }
       return null;
+    }
+    // Joints have a place, but nothing is drawn there unless their axes are switched on.
+    pickJoint(r, px, py) {
+      const { arm, run } = this.views[r], near = [];
+      run.picture.joints.forEach((joint, j) => {
+        if (!joint.columns.length || joint.link < 0 || !arm.links[joint.link].visible) return;
+        const [x, y] = this.project(arm.links[joint.link].position.toArray(), r), distance = Math.hypot(x - px, y - py);
+        if (distance <= NEAR) near.push({ joint: j, distance });
+      });
+      if (!near.length) return null;
+      near.sort((a, b) => a.distance - b.distance);
+      const joints = near.filter(({ distance }) => distance <= near[0].distance + 1).map(({ joint }) => joint);
+      const [joint] = joints;
+      return { run: r, link: run.picture.joints[joint].link, joint, joints, beam: -1 };
     }
     pickIn(r) {
       const { arm, marks, run } = this.views[r];
@@ -256,7 +273,10 @@
       const [hit] = this.ray.intersectObjects(objects);
       if (!hit) return null;
       const { part, joint } = hit.object.userData;
-      if (joint) return { run: r, link: joint.link, joint: run.picture.joints.indexOf(joint), beam: -1 };
+      if (joint) {
+        const index = run.picture.joints.indexOf(joint);
+        return { run: r, link: joint.link, joint: index, joints: [index], beam: -1 };
+      }
       const section = part.bend ? arm.sectionOf(part, hit.face) : 0;
       return { run: r, link: part.link, joint: -1, beam: part.beam, section };
     }

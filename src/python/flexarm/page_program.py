@@ -1,6 +1,7 @@
 """What `flexarm show` does with results."""
 
 import argparse
+import json
 import os
 import sys
 import warnings
@@ -72,13 +73,14 @@ def page_with(arguments):
     origins = [table.origin for _, table in tables if table.origin]
     encoded = []
     for path, table in tables:
-        for loss in losses[path]:
-            print("flexarm: warning: %s" % loss, file=sys.stderr)
         run = Run(table.names, table.units, table.rows, path)
         if not len(run.rows):
             raise flexarm.ResultsError("%s: there are no rows" % path)
         scene = scenes.of(path, table.origin or (origins[0] if origins else None))
         encoded.append(encode(run, scene, arguments.rate, losses[path]))
+    notes = [note for picture, _ in encoded for note in json.loads(picture)["notes"]]
+    for note in dict.fromkeys(notes):
+        print("flexarm: warning: %s" % note, file=sys.stderr)
     return page_of(encoded)
 
 

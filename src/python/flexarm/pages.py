@@ -43,7 +43,7 @@ def show(*runs: Shown, scene: typing.Optional[Scene] = None, rate: float = 60.0,
     scene: of the runs that are a Run, as read_scene() gives it, or the path of its file.
     rate: instants of a Run that are shown per second [1/s], at most.
     height: in a notebook [pixels].
-    Raises ValueError if a Run has no columns that tell where the links of the scene are.
+    Raises ValueError if a Run needs a scene and there is none.
     """
     encoded = []
     for run in runs:

@@ -180,12 +180,25 @@ def read_hdf5(path: str, choose: Choice, losses: Losses = None) -> Table:
     except OSError as error:
         size = cut_hdf5.whole_size(error)
         if losses is None or size is None:
-            raise ResultsError("%s: cannot be read: %s" % (path, error.strerror or error)) from None
+            raise ResultsError("%s: cannot be read: %s" % (path, _reason(path, error, size))) from None
         return _read_cut_hdf5(path, size, choose, losses)
     if len(set(map(len, columns))) > 1:
         raise ResultsError("%s: expected columns of one length, got %s" % (path, ", ".join(
             "%d of '%s'" % (len(column), name) for name, column in zip(wanted[:MOST_NAMES], columns))))
     return Table(wanted, units, numpy.transpose(columns), origin)
+
+
+def _reason(path: str, error: OSError, size: typing.Optional[int]) -> str:
+    """Why HDF5 could not open a file. size: that it once had, if it is not whole."""
+    if size is not None:
+        return "it has lost its end: there are only %d of %d bytes" % (os.path.getsize(path), size)
+    if error.strerror and error.errno:
+        return error.strerror
+    if not os.path.getsize(path):
+        return "it is empty"
+    if "signature not found" in str(error):
+        return "it is not an HDF5 file, or its beginning is damaged"
+    return "it is damaged (HDF5: %s)" % error
 
 
 def _read_cut_hdf5(path: str, size: int, choose: Choice, losses: typing.List[str]) -> Table:
@@ -201,7 +214,7 @@ def _read_cut_hdf5(path: str, size: int, choose: Choice, losses: typing.List[str
 
 
 def read_bag(path: str, choose: Choice, losses: Losses = None) -> Table:
-    """Reads the topic /joint_states."""
+    """Reads the topic /joint_states and, at the times of its messages, frames of /tf and samples of wrench sensors."""
     bags = importlib.import_module("flexarm.identification.bags")  # untyped
     if not os.path.exists(path):
         raise ResultsError("%s: cannot be read: No such file or directory" % path)
@@ -221,10 +234,12 @@ def read_bag(path: str, choose: Choice, losses: Losses = None) -> Table:
                 names = here
                 rows.append([time] + [value for quantity in given for value in getattr(message, quantity)])
             origin = _origin(*bags.origin(whole))
+            more = bags.columns_at(whole, numpy.array(rows)[:, 0])
     except bags.InputError as error:
         raise ResultsError(str(error).replace(whole, path)) from None
-    wanted = list(choose(names))
-    table = numpy.array(rows)[:, [names.index(name) for name in wanted]]
+    values = {**more, **dict(zip(names, numpy.transpose(rows)))}
+    wanted = list(choose(list(dict.fromkeys(names + list(more)))))
+    table = numpy.transpose([values[name] for name in wanted])
     return Table(wanted, list(map(unit_of, wanted)), table, origin)
 
 

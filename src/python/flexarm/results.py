@@ -150,7 +150,8 @@ def read_run(path: typing.Union[str, "os.PathLike[str]"],
              columns: typing.Optional[typing.Sequence[str]] = None) -> Run:
     """Reads results that `flexarm simulate --output` has written.
 
-    path: of a CSV file, of an HDF5 file (.h5, .hdf5), or of a ROS bag (.bag), whose topic /joint_states is read; "-" is
+    path: of a CSV file, of an HDF5 file (.h5, .hdf5), or of a ROS bag (.bag), whose topics /joint_states, /tf and
+      those of sensors that measure forces and moments are read, at the times of the first; "-" is
       the standard input, as CSV.
     columns: patterns of the columns that are read besides `time`; None: all.
     CSV files and bags do not have units, which then follow from the names: `rad or m` for positions of joints.

@@ -11,7 +11,7 @@ LARGEST_GIF_RATE = 50  # browsers play faster ones slowly
 DEFAULTS = {".mp4": ((1280, 720), 30), ".gif": ((640, 360), 20), ".png": ((1280, 720), 30)}
 VIEWS = {"x": (1, 0, 0), "y": (0, -1, 0), "z": (0, 0, 1)}
 COLORS = "strain", "axial", "shear", "torsion", "bending", "velocity", "plain"
-THINGS = "grid", "world", "axes", "still", "effort", "load", "reaction", "contact", "probes", "trails"
+THINGS = "grid", "world", "axes", "still", "effort", "load", "reaction", "contact", "probes", "trails", "lines"
 
 
 def read_arguments(words):

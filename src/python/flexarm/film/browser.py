@@ -90,6 +90,19 @@ def _failures(what):
         raise FilmError("%s: %s" % (what, lines[0] if lines else type(error).__name__)) from None
 
 
+def _require_end(path):
+    """Refuse a page that has lost its end, for example in a copy that was not finished."""
+    try:
+        with open(path, "rb") as file:
+            begin = file.read(1000)
+            file.seek(max(os.path.getsize(path) - 1000, 0))
+            end = file.read()
+    except OSError as error:
+        raise InputError("%s: %s" % (path, error.strerror)) from None
+    if b"<title>flexarm</title>" in begin and not end.rstrip().endswith(b"</html>"):
+        raise InputError("%s: the page is incomplete: it has lost its end" % path)
+
+
 class Browser:
     """Chromium without a window. It must be closed, else its processes stay."""
 
@@ -136,6 +149,7 @@ class Browser:
 
     def open(self, path):
         """Open a page, and wait until its first picture is drawn. Return its runs, each with start, end and clips."""
+        _require_end(path)
         with _failures("the browser cannot open '%s'" % path):
             self._session.get(pathlib.Path(os.path.abspath(path)).as_uri())
             answer = self._session.execute_async_script(READY)

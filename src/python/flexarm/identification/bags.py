@@ -41,9 +41,80 @@ def messages(path, topic):
                     path, wanted, "the topics " + ", ".join(topics) if topics else "none"))
             for _, message, received in bag.read_messages(wanted):
                 stamp = message.header.stamp if hasattr(message, "header") else received
-                yield (stamp if stamp.to_nsec() else received).to_sec(), message
+                yield _seconds(stamp if stamp.to_nsec() else received), message
     except (OSError, rosbag.ROSBagException) as error:
         raise InputError("%s: cannot be read as a bag: %s" % (path, error)) from None
+
+
+def _seconds(stamp):
+    """The time of a stamp [s]. Bags have no time 0: the simulator writes the smallest time that they have."""
+    return stamp.to_sec() if stamp.to_nsec() > 1 else 0.0
+
+
+def columns_at(path, times):
+    """Columns of the topics /tf and /sensors/NAME at some times, by names: frame/NAME/x to qw in the frame that carries
+    all others, sensor/NAME/fx to mz. Frames are interpolated; sensors keep their last sample."""
+    edges, wrenches = {}, {}
+    with _rosbag(path).Bag(path) as bag:
+        topics = [topic for topic in bag.get_type_and_topic_info().topics
+                  if topic in ("/tf", "/tf_static") or topic.startswith("/sensors/")]
+        for topic, message, _ in bag.read_messages(topics) if topics else ():
+            if topic in ("/tf", "/tf_static"):
+                for transform in message.transforms:
+                    _, at, poses = edges.setdefault(transform.child_frame_id, (transform.header.frame_id, [], []))
+                    place, turn = transform.transform.translation, transform.transform.rotation
+                    at.append(_seconds(transform.header.stamp))
+                    poses.append((place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+            elif hasattr(message, "wrench"):
+                at, samples = wrenches.setdefault(topic[len("/sensors/"):], ([], []))
+                at.append(_seconds(message.header.stamp))
+                samples.append([getattr(getattr(message.wrench, field), axis) for field, axis in WRENCH.values()])
+    columns = {}
+    for name, poses in frames_at({child: (parent, numpy.array(at), numpy.array(poses))
+                                  for child, (parent, at, poses) in edges.items()}, times).items():
+        columns.update(("frame/%s/%s" % (name, part), poses[:, k])
+                       for k, part in enumerate(("x", "y", "z", "qx", "qy", "qz", "qw")))
+    for name, (at, samples) in wrenches.items():
+        last = numpy.searchsorted(at, times + 1e-9, side="right") - 1
+        held = numpy.where(last[:, None] >= 0, numpy.array(samples)[numpy.maximum(last, 0)], numpy.nan)
+        columns.update(("sensor/%s/%s" % (name, part), held[:, k]) for k, part in enumerate(WRENCH))
+    return columns
+
+
+def frames_at(edges, times):
+    """Poses x y z qx qy qz qw of frames at some times, shape (times, 7), by names, in the frame without a parent.
+
+    edges: by names of frames, (name of the parent, times, poses in the parent, shape (times, 7)).
+    """
+    found = {}
+    for start in edges:
+        chain = [start]  # up to a frame that is known or has no parent; a circle of frames ends, too
+        while chain[-1] in edges and chain[-1] not in found and edges[chain[-1]][0] not in chain:
+            chain.append(edges[chain[-1]][0])
+        here = found.setdefault(chain[-1], numpy.tile([0.0, 0, 0, 0, 0, 0, 1], (len(times), 1)))
+        for name in reversed(chain[:-1]):
+            _, at, poses = edges[name]
+            here = found[name] = _composed(here, _interpolated(at, poses, times))
+    return found
+
+
+def _interpolated(at, poses, times):
+    order = numpy.argsort(at, kind="stable")
+    at, poses = at[order], poses[order].copy()
+    signs = numpy.sign(numpy.einsum("ij,ij->i", poses[1:, 3:], poses[:-1, 3:]))
+    poses[1:, 3:] *= numpy.cumprod(numpy.where(signs < 0, -1, 1))[:, None]
+    out = numpy.transpose([numpy.interp(times, at, track) for track in poses.T])
+    out[:, 3:] /= numpy.linalg.norm(out[:, 3:], axis=1)[:, None]
+    return out
+
+
+def _composed(first, second):
+    """Poses that are given in other poses."""
+    u, w, v, s = first[:, 3:6], first[:, 6:], second[:, 3:6], second[:, 6:]
+    place = second[:, :3]
+    turned = place + 2 * w * numpy.cross(u, place) + 2 * numpy.cross(u, numpy.cross(u, place))
+    turn = numpy.hstack([w * v + s * u + numpy.cross(u, v), w * s - numpy.sum(u * v, axis=1, keepdims=True)])
+    return numpy.hstack([first[:, :3] + turned, turn])
 
 
 def _has_lost_its_end(path):

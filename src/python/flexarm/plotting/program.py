@@ -6,7 +6,7 @@ import shutil
 import sys
 
 from ..errors import ResultsError
-from ..results import read_run
+from ..results import Run, read_columns
 from . import curves, figures, terminal
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2  # exit status, as of flexarm's other commands
@@ -84,9 +84,20 @@ def list_columns(runs):
             print("  " + curves.printable(curves.labelled(name, unit)))
 
 
+def read(path, columns):
+    """Reads a run as read_run() does. Of a file that has lost its end, what is left, with a warning."""
+    losses = []
+    try:
+        table = read_columns(path, columns, losses)
+    finally:  # also if what is left does not do
+        for loss in losses:
+            print("flexarm: plot: warning: %s" % curves.printable(loss), file=sys.stderr)
+    return Run(table.names, table.units, table.rows, "standard input" if path == "-" else path)
+
+
 def plot(arguments):
     wanted = arguments.columns or [pattern for pair in arguments.phase for pattern in pair]
-    runs = [read_run(path, wanted or None) for path in arguments.runs]
+    runs = [read(path, wanted or None) for path in arguments.runs]
     if not wanted:
         return list_columns(runs)
     runs = [run.between(arguments.begin, arguments.end) for run in runs]

@@ -56,8 +56,12 @@ def read_arguments(words):
     parser.add_argument("--repeat-failed", action="store_true", help="repeats runs that failed")
     parser.add_argument("--show", metavar="RUN,...", type=run_numbers, default=[],
                         help="repeats these runs, and writes a page that plays them side by side in a browser")
+    parser.add_argument("--open", action="store_true", help="opens the page in a browser")
     parser.add_argument("--quiet", action="store_true", help="no progress bar and no summary")
-    return parser.parse_args(words)
+    arguments = parser.parse_args(words)
+    if arguments.open and not arguments.show:
+        parser.error("--open: expected --show beside it")
+    return arguments
 
 
 def output_of(arguments):
@@ -124,7 +128,7 @@ def sweep(arguments):
                  "; %d failed, the column 'failure' says why" % failures if failures else ""))
     if arguments.show:
         page = os.path.splitext(output)[0] + ".html"
-        pages.write_page(page, plan, arguments.show)
+        pages.write_page(page, plan, arguments.show, arguments.open)
         print("%s shows it in a browser" % page)
     return DONE
 

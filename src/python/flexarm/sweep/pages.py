@@ -1,6 +1,7 @@
 """Shows runs of a sweep in a browser."""
 
 import math
+import sys
 import warnings
 
 import flexarm
@@ -10,9 +11,16 @@ from .commands import effort_rows
 RATE = 60  # instants per second of simulated time
 
 
-def write_page(path, plan, numbers):
-    """Repeats runs of the plan, by their numbers, and writes a page that plays them side by side."""
-    flexarm.show(*(recorded(plan, number) for number in numbers)).save(path)
+def write_page(path, plan, numbers, opens):
+    """Repeats runs of the plan, by their numbers, and writes a page that plays them side by side.
+
+    opens: whether it is opened in a browser.
+    """
+    page = flexarm.show(*(recorded(plan, number) for number in numbers))
+    if not opens:
+        page.save(path)
+    elif not page.open(path):
+        print("flexarm: no browser can be started: open %s yourself" % path, file=sys.stderr)
 
 
 def recorded(plan, number):
