@@ -48,6 +48,10 @@ DOXYGEN_XML = os.path.join(os.environ["FLEXARM_DOCS"], "doxygen", "xml")
 breathe_projects = {"flexarm": DOXYGEN_XML}
 breathe_default_project = "flexarm"
 
+# The pages that `flexarm bench validation` writes, one for each case.
+VALIDATION = sorted(name[:-3] for name in os.listdir(os.path.join(ROOT, "docs", "validation"))
+                    if name.endswith(".md") and name != "README.md")
+
 # The order of reading: each page has a next one. A caption of README.md or a page, then what is below it.
 CONTENTS = {
     "README": [
@@ -59,13 +63,14 @@ CONTENTS = {
         ("Theory", "docs/theory docs/notes/README docs/architecture CONTRIBUTING"),
         ("Reports", """docs/demo docs/contact docs/lines docs/reports/speed docs/reports/accuracy docs/reports/hard
             docs/reports/properties docs/reports/thesis docs/reports/scaling docs/reports/latency docs/reports/soak
-            docs/reports/faults"""),
+            docs/reports/faults docs/validation/README"""),
     ],
     "docs/scene_format": [
         ("", """scene/conventions scene/parameters scene/links scene/joints scene/loops scene/cylinders scene/play
             scene/drives scene/simulation scene/springs scene/tendons scene/contact scene/sensors
             scene/functions_of_time scene/checks"""),
     ],
+    "docs/validation/README": [("", " ".join(VALIDATION))],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
         ("", """beam joints beyond explicit newton tree planar kernel stops drives lines oil contact linearisation

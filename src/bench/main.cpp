@@ -17,6 +17,7 @@
 #include "cli/files.h"
 #include "cli/installation.h"
 #include "cli/interruptions.h"
+#include "cli/other_programs.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
 
@@ -339,6 +340,11 @@ void add_scaling(cli::CommandLine& line, BenchArguments& arguments) {
   command.runs([&arguments] { return report_scaling(arguments); });
 }
 
+void add_validation(cli::CommandLine& line) {
+  line.program("validation", "flexarm beside published measurements", cli::CommandLine::Kind::Other,
+               [](const cli::Words& words) -> int { cli::become_python("bench validation", "validation.py", words); });
+}
+
 }  // namespace
 }  // namespace flexarm::bench
 
@@ -353,5 +359,6 @@ int main(int argc, char** argv) {
   add_accuracy(line, arguments);
   add_hard(line, arguments);
   add_scaling(line, arguments);
+  add_validation(line);
   return line.run(argc, argv);
 }

@@ -1,0 +1,135 @@
+"""A flexible arm on a hub with a motor: steps of the hub's angle under the recorded voltage."""
+
+import itertools
+import os
+import shutil
+import tempfile
+
+import numpy
+
+from flexarm import Simulation, read_scene
+from flexarm.validation import Row
+from flexarm.validation.fits import fit_run
+
+BEFORE, AFTER = 0.1, 2.4  # the step of the reference; from the records [s]
+HUB_DELAYS, GAUGE_DELAYS = (0.0, 0.01, 0.02), (0.06, 0.07, 0.08)  # that are tried [s]
+GROUPS = {"t90_s": "hub", "hub_extremum_rad": "hub", "tip1_m": "first swing", "t1_s": "first swing",
+          "tip2_m": "second swing", "t2_s": "second swing"}
+FIRST = {"bending": 0.25, "ratio": 0.02, "inertia": 0.002, "dry": 0.05}  # values of the search
+HUB, GAUGE = "joint/hub/position", "sensor/gauge/strain"
+# The two steps of a rig differ by up to 10 % in the tip's deflection and 30 ms in its times; the gauge's scale is not
+# known.
+DEFLECTION, TIME, OVERSHOOT = 0.10, 0.03, 0.05  # relative; s; of the step, which friction may leave
+
+
+class Step:
+    """A step of the reference in a record: times [s], voltage [V], hub's angle [rad] and tip's deflection [m]."""
+
+    def __init__(self, path, number, sign):
+        table = numpy.loadtxt(path, comments="%")
+        change = numpy.flatnonzero(abs(numpy.diff(table[:, 5])) > 0.1)[number - 1] + 1
+        part = table[change - round(1e3 * BEFORE):change + round(1e3 * AFTER)]
+        self.times = 1e-3 * (part[:, 0] - part[0, 0])
+        self.voltage, self.hub, self.tip = part[:, 6], part[:, 1], sign * part[:, 2]
+        self.start = self.hub[:50].mean()
+
+
+class Arm:
+    """The scene with the voltage of a step, in a folder of its own."""
+
+    def __init__(self, case, step):
+        self._folder = tempfile.TemporaryDirectory()
+        self.path = shutil.copy(case.path("arm.urdf"), self._folder.name)
+        self.step = step
+        values = {parameter.name: parameter.value for parameter in case.scene("arm.urdf").parameters}
+        torque = values["gear"] * values["motor"] / values["resistance"] * step.voltage
+        numpy.savetxt(os.path.join(self._folder.name, "torque.csv"), numpy.column_stack([step.times, torque]), "%.9g",
+                      ",", header="time,torque", comments="")
+
+    def run(self, values, delays):
+        """What would be measured: hub's angle and tip's deflection at the times of the step."""
+        simulation = Simulation(read_scene(self.path, {**values, "start": self.step.start}))
+        rows = simulation.run(round(self.step.times[-1] / simulation.step_size), record=[HUB, GAUGE])
+        rows = numpy.vstack([[0, self.step.start, 0], rows])
+        return [numpy.interp(self.step.times - delay, rows[:, 0], sign * rows[:, i])
+                for i, (delay, sign) in enumerate(zip(delays, (1, -1)), 1)]
+
+    def fit(self, delays, unknowns, known):
+        """Values with those that are known, standard errors, and the sum of squares relative to the record's spread."""
+        step = self.step
+        hub, tip = (numpy.interp(step.times + delay, step.times, column, right=numpy.nan)[::10]
+                    for delay, column in zip(delays, (step.hub, step.tip)))
+        found, errors = fit_run(self.path, unknowns, step.times[::10], {HUB: hub, GAUGE: -tip},
+                                {**known, "start": step.start}, step=0.002)
+        values = {**known, **found}
+        curves = self.run(values, delays)
+        return values, errors, sum(((each - column) ** 2).mean() / column.var()
+                                   for each, column in zip(curves, (step.hub, step.tip)))
+
+
+def metrics(times, hub, tip, start, end):
+    """Time to 90 % of the step, extremum of the hub, and first and second extremum of the tip with their times."""
+    after = times >= BEFORE
+    t, part = times[after] - BEFORE, (hub[after] - start) / (end - start)
+    sense = numpy.sign(end - start)
+    first = numpy.argmin(numpy.where(t < 0.35, sense * tip[after], numpy.inf))
+    second = numpy.argmax(numpy.where((t > 0.3) & (t < 0.8), sense * tip[after], -numpy.inf))
+    return {"t90_s": t[numpy.argmax(part >= 0.9)], "hub_extremum_rad": start + (end - start) * part.max(),
+            "tip1_m": tip[after][first], "t1_s": t[first], "tip2_m": tip[after][second], "t2_s": t[second]}
+
+
+def identify(case, arm, name):
+    """Values of the first rig, and the delays of its signals: those of the best of several searches. Tells them."""
+    tries = {delays: arm.fit(delays, FIRST, {}) for delays in itertools.product(HUB_DELAYS, GAUGE_DELAYS)}
+    delays = min(tries, key=lambda each: tries[each][2])
+    values, errors, _ = tries[delays]
+    for key, label, unit in (("bending", "bending stiffness", "N m^2"), ("ratio", "damping ratio of the arm", ""),
+                             ("inertia", "inertia of the hub (nominal: 0.002)", "kg m^2"),
+                             ("dry", "dry friction of unit 6", "N m")):
+        case.identify(label, values[key], unit, name, errors[key])
+    case.identify("delay of the hub's angle", 1e3 * delays[0], "ms", name)
+    case.identify("delay of the gauge", 1e3 * delays[1], "ms", name)
+    return values, delays
+
+
+def identify_friction(case, arm, name, values, delays):
+    """Values of another rig of the same kind: only its friction is its own."""
+    known = {key: value for key, value in values.items() if key != "dry"}
+    found, errors, _ = arm.fit(delays, {"dry": values["dry"]}, known)
+    case.identify("dry friction of unit 7", found["dry"], "N m", name, errors["dry"])
+    return found
+
+
+def compare(case):
+    curves, values, delays = [], None, None
+    for row in case.table("numbers.csv"):
+        step = Step(case.record(row["record"]), int(row["step"]), row["sign"])
+        arm = Arm(case, step)
+        name = "%s, step %d" % ("unit 6" if "Unit6" in row["record"] else "unit 7", row["step"])
+        is_fitted = row["step"] == 1
+        if values is None:
+            values, delays = identify(case, arm, name)
+        elif is_fitted:
+            values = identify_friction(case, arm, name, values, delays)
+        hub, tip = arm.run(values, delays)
+        curves.append((name, step, hub, tip))
+        found = metrics(step.times, hub, tip, row["from_rad"], row["to_rad"])
+        hub_range = OVERSHOOT * abs(row["to_rad"] - row["from_rad"])
+        for key, label, unit, uncertainty in (
+                ("t90_s", "time to 90 %", "s", TIME), ("hub_extremum_rad", "extremum of the hub", "rad", hub_range),
+                ("tip1_m", "first extremum of the tip", "m", None), ("t1_s", "its time", "s", TIME),
+                ("tip2_m", "second extremum of the tip", "m", None), ("t2_s", "its time", "s", TIME)):
+            yield Row("%s: %s" % (name, label), row[key], found[key], uncertainty or DEFLECTION * abs(row[key]), unit,
+                      note="steps of a rig differ by this", is_fitted=is_fitted, group=GROUPS[key])
+    case.draw(lambda axes: draw(axes, curves), columns=4, rows=2, width=3.2, height=2.5)
+
+
+def draw(axes, curves):
+    for i, (name, step, hub, tip) in enumerate(curves):
+        for each, measured, found in ((axes[i], step.hub, hub), (axes[i + 4], 1e3 * step.tip, 1e3 * tip)):
+            each.plot(step.times, measured, color="#D55E00", label="measured")
+            each.plot(step.times, found, color="black", linewidth=0.9, label="flexarm")
+            each.set(xlabel="time [s]")
+        axes[i].set(title=name, ylabel="hub [rad]")
+        axes[i + 4].set(ylabel="tip [mm]")
+    axes[0].legend(fontsize=8)
