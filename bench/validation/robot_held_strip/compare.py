@@ -67,15 +67,16 @@ def frequency_at_rest(case, pitch, **values):
 
 
 def identify(case, strip, log):
-    """Young's modulus and damping ratio, from the first log."""
+    """Young's modulus, damping ratio and drag coefficient, from the first log."""
     still = strip.run(0.002)[1][0]  # the strip's weight
     used = (log.times > log.rest + SETTLED)
     force = numpy.where(used, log.force - log.force[used].mean() + still, numpy.nan)[::10]
-    values, errors = fit_run(strip.path, {"young": 190e9, "ratio": 0.01}, log.times[::10], {"sensor/root/fz": force},
-                             {"pitch": strip.pitch}, step=0.002)
+    values, errors = fit_run(strip.path, {"young": 190e9, "ratio": 0.005, "drag": 5.0}, log.times[::10],
+                             {"sensor/root/fz": force}, {"pitch": strip.pitch}, step=0.002)
     source = "the %s log with %g cm" % FITTED
     case.identify("Young's modulus", values["young"] / 1e9, "GPa", source, errors["young"] / 1e9)
     case.identify("damping ratio", values["ratio"], "", source, errors["ratio"])
+    case.identify("drag coefficient", values["drag"], "", source, errors["drag"])
     return values
 
 
