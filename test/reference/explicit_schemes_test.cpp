@@ -357,8 +357,7 @@ TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
   };
   expect_no("servos", refusal(hinge + end + R"(<servo joint="hinge" mode="position" kp="4" kd="1" set_point="1"/>)"));
   expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
-  expect_no("springs, lines, drag or contacts",
-            refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
+  expect_no("springs, lines or contacts", refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
       from="world" from_at="1 1 0" to="arm" to_at="0 0 1"/>)"));
   expect_no("flexible links", refusal(hinge + end + R"(<joint name="glue" type="fixed"><parent link="arm"/>
       <child link="rod"/></joint><link name="rod"><beam elements="1"><centerline><line to="1 0 0"/></centerline>
