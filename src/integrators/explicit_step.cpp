@@ -23,7 +23,7 @@ const char* obstacle(const Model& model) {
   if (has_beams) return "flexible links";
   if (!model.slide_lines.empty()) return "sliders";
   if (!model.closures.empty()) return "closed loops";
-  if (!model.force_elements.empty()) return "springs, lines or contacts between points";
+  if (!model.force_elements.empty()) return "springs, lines or contacts between points, or drag";
   if (!model.held.empty()) return "joints that a motion holds";
   for (const Coordinate& coordinate : model.coordinates) {
     if (coordinate.motion >= 0) return "prescribed motions";

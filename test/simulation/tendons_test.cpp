@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/scene_parts.h"
 
 namespace flexarm::test {
 namespace {
@@ -25,29 +25,9 @@ std::string ball(const std::string& name, double mass, const std::string& at, co
       name, mass, at, release == "planar" ? "<axis xyz=\"0 1 0\"/>" : "", release);
 }
 
-Simulation simulation_of(const std::string& parts, const std::string& options = "", double step = 1e-3,
-                         const std::string& scheme = "em") {
-  const std::string text = fmt::format(
-      R"(<robot name="r"> <link name="world"/> {} <simulation> <integrator scheme="{}" step="{}" tolerance="1e-12"/> {} </simulation>
-         </robot>)",
-      parts, scheme, step, options);
-  const scene::ReadResult read = scene::read_scene_text(text, "tendons.urdf");
-  for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
-  return Simulation(read.scene.value());
-}
-
-void advance(Simulation& simulation, double until) {
-  while (simulation.time() < until - 1e-9) ASSERT_TRUE(simulation.step().converged);
-}
-
 double column(const Simulation& simulation, const std::string& name) {
   ResultColumns columns(simulation, ResultColumns::Solver::Without, {name});
   return columns.row(simulation, {}).back();
-}
-
-double imbalance(const Simulation& simulation, double start) {
-  const Energies now = simulation.energies();
-  return now.total() + now.dissipated - now.work - start;
 }
 
 /// Errors at a number of steps, each half as long as the one before; the order of convergence from the last two.
@@ -62,10 +42,10 @@ const char* const kGravity = R"(<gravity xyz="0 0 -9.81"/>)";
 
 // A mass on a rope of EA 1000 N and 2 m: it stretches by m g L0 / EA.
 TEST(Tendons, CarryAWeight) {
-  Simulation s = simulation_of(ball("mass", 5, "0 0 -2.1", "free") +
-                                   R"(<tendon name="rope" ea="1000" rest_length="2"> <via link="world"/>
+  Simulation s = simulation_of_parts(ball("mass", 5, "0 0 -2.1", "free") +
+                                         R"(<tendon name="rope" ea="1000" rest_length="2"> <via link="world"/>
                                       <via link="mass"/> </tendon>)",
-                               kGravity);
+                                     kGravity);
   ASSERT_TRUE(s.solve_static(1).converged);
   const double stretch = 5 * 9.81 * 2 / 1000;
   EXPECT_NEAR(column(s, "tendon/rope/tension"), 5 * 9.81, 1e-6);
@@ -89,12 +69,12 @@ const char* const kFinger = R"(
 
 // The angles minimise the energy of springs and tendon (scipy, to 1e-14).
 TEST(Tendons, BendAFinger) {
-  Simulation given = simulation_of(fmt::format(kFinger, R"(tension="3")"));
+  Simulation given = simulation_of_parts(fmt::format(kFinger, R"(tension="3")"));
   ASSERT_TRUE(given.solve_static(10).converged);
   EXPECT_NEAR(given.position(0), 1.1656039679167243, 1e-9);
   EXPECT_NEAR(given.position(1), 1.4996953348183708, 1e-9);
   EXPECT_NEAR(column(given, "tendon/flexor/length"), 0.05752429550742347, 1e-11);
-  Simulation elastic = simulation_of(fmt::format(kFinger, R"(ea="80" rest_length="0.08511448292457283")"));
+  Simulation elastic = simulation_of_parts(fmt::format(kFinger, R"(ea="80" rest_length="0.08511448292457283")"));
   ASSERT_TRUE(elastic.solve_static(10).converged);
   EXPECT_NEAR(column(elastic, "tendon/flexor/length"),
               0.08511448292457283 * (1 + column(elastic, "tendon/flexor/tension") / 80), 1e-12);
@@ -109,7 +89,7 @@ Simulation cable_robot(const std::vector<double>& rest) {
     cables += fmt::format(R"(<tendon name="cable{}" ea="10000" rest_length="{:.17g}"> <via link="world" at="{} 0 {}"/>
                              <via link="platform" at="{} 0 {}"/> </tendon>)",
                           i + 1, rest[i], ends[i][0], ends[i][1], ends[i][2], ends[i][3]);
-  return simulation_of(
+  return simulation_of_parts(
       R"(<joint name="plane" type="floating"> <parent link="world"/> <child link="platform"/> <origin xyz="1.5 0 1"/>
            <axis xyz="0 1 0"/> <release kind="planar"/> </joint>
          <link name="platform"> <inertial> <mass value="8"/>
@@ -151,7 +131,7 @@ TEST(Tendons, HoistAPendulum) {
     const auto at = tested.at, velocity = tested.velocity;
     const Vector3 end = tested.end;
     const auto error = [&](double step) {
-      Simulation s = simulation_of(
+      Simulation s = simulation_of_parts(
           ball("mass", 5, at) + R"(<tendon name="rope" ea="20000" rest_length="2+0.5*cos(_pi*t/4) "> <via link="world"/>
                                    <via link="mass"/> </tendon>)",
           kGravity + fmt::format(R"(<initial link="mass" linear="{}" angular="0 0 0"/>
@@ -159,7 +139,7 @@ TEST(Tendons, HoistAPendulum) {
                                  velocity),
           step);
       const double start = s.energies().total();
-      advance(s, 8);
+      move_until(s, 8);
       EXPECT_LT(std::abs(imbalance(s, start)), 1e-11 * 8 / step);  // round-off of 100 J
       return (s.probe_pose(0).position - end).norm();
     };
@@ -173,13 +153,13 @@ TEST(Tendons, AreWoundUpByAWinch) {
   const std::string mass = ball("mass", 5, "1.2011434809983093 0 -2.198678393982359");
   const std::string vias = R"(<via link="world"/> <via link="mass"/> </tendon>)";
   const std::string options = std::string(kGravity) + R"(<probe name="mass" link="mass"/>)";
-  Simulation given =
-      simulation_of(mass + R"(<tendon name="rope" ea="20000" rest_length="2+0.5*cos(_pi*t/4) ">)" + vias, options);
-  Simulation wound = simulation_of(
+  Simulation given = simulation_of_parts(
+      mass + R"(<tendon name="rope" ea="20000" rest_length="2+0.5*cos(_pi*t/4) ">)" + vias, options);
+  Simulation wound = simulation_of_parts(
       mass + R"(<tendon name="rope" ea="20000" rest_length="2.5">)" + vias + R"(<winch name="hoist" tendon="rope"/>)",
       options + R"(<motion joint="hoist" position="-0.5+0.5*cos(_pi*t/4) "/>)");
   const double start = wound.energies().total();
-  advance(given, 2), advance(wound, 2);
+  move_until(given, 2), move_until(wound, 2);
   EXPECT_LT((given.probe_pose(0).position - wound.probe_pose(0).position).norm(), 1e-9);
   EXPECT_NEAR(column(wound, "joint/hoist/position"), -0.5, 1e-12);
   // The force on what is paid out is T (1 + T / (2 EA)), against it.
@@ -198,7 +178,7 @@ TEST(Tendons, RunOverPulleys) {
     const double length = grips ? 1 / (1 + first / ea) + 2 / (1 + second / ea) : (3 + 0.15 * kPi) / (1 + first / ea);
     const double z1 = -1, z2 = grips ? -(length / 3 * 2) * (1 + second / ea) : -2;
     const double z_first = grips ? -(length / 3) * (1 + first / ea) : z1;
-    Simulation s = simulation_of(
+    Simulation s = simulation_of_parts(
         ball("a", 3, fmt::format("-0.15 0 {:.17g}", z_first)) + ball("b", 2, fmt::format("0.15 0 {:.17g}", z2)) +
             fmt::format(
                 R"(<joint name="axle" type="continuous"> <parent link="world"/> <child link="drum"/>
@@ -211,7 +191,7 @@ TEST(Tendons, RunOverPulleys) {
                 ea, length, grips ? "true" : "false"),
         std::string(kGravity) + R"(<probe name="a" link="a"/>)");
     const double start = s.energies().total();
-    advance(s, 0.5);
+    move_until(s, 0.5);
     const double way = z_first - s.probe_pose(0).position.z();
     EXPECT_NEAR(way, 0.5 * acceleration * 0.25, 2e-4) << grips;  // stretches change by 1e-4 on the way
     EXPECT_LT(std::abs(imbalance(s, start)), 1e-9) << grips;
@@ -228,14 +208,14 @@ TEST(Tendons, RunOverPulleys) {
 TEST(Tendons, DoNotJumpRoundPulleys) {
   for (const char* const side : {"left", "right"}) {
     Simulation s =
-        simulation_of(ball("mass", 1, "-1 0 2") + fmt::format(R"(<tendon name="rope" ea="1e4" rest_length="60">
+        simulation_of_parts(ball("mass", 1, "-1 0 2") + fmt::format(R"(<tendon name="rope" ea="1e4" rest_length="60">
                                                       <via link="world" at="-1 0 0"/>
                                                       <pulley link="world" axis="0 1 0" radius="0.1" side="{}" wrap="0"/>
                                                       <via link="mass"/> </tendon>
                                                     <tendon name="orbit" tension="12.5"> <via link="world" at="-1 0 0"/>
                                                       <via link="mass"/> </tendon>)",
-                                                              side),
-                      R"(<gravity xyz="0 0 0"/> <initial link="mass" linear="5 0 0" angular="0 0 0"/>)");
+                                                                    side),
+                            R"(<gravity xyz="0 0 0"/> <initial link="mass" linear="5 0 0" angular="0 0 0"/>)");
     double last = column(s, "tendon/rope/length");
     for (int i = 0; i < 8000; ++i) {  // three turns of 2.5 s
       ASSERT_TRUE(s.step().converged);
@@ -250,13 +230,13 @@ TEST(Tendons, DoNotJumpRoundPulleys) {
 // A peg below the pivot catches the line of a pendulum, and lets it go, ten times. Each time the energy changes by the
 // third power of the angle of a step, up to 0.01 rad, which the account has.
 TEST(Tendons, AreCaughtByAPeg) {
-  Simulation s = simulation_of(ball("bob", 1, "-0.6 0 -0.8", "planar") +
-                                   R"(<tendon name="line" ea="500"> <via link="world"/> <pulley link="world"
+  Simulation s = simulation_of_parts(ball("bob", 1, "-0.6 0 -0.8", "planar") +
+                                         R"(<tendon name="line" ea="500"> <via link="world"/> <pulley link="world"
                                         at="0.02 0 -0.5" axis="0 1 0" radius="0.02" side="right" wrap="0"/>
                                       <via link="bob"/> </tendon>)",
-                               kGravity);
+                                     kGravity);
   const double start = imbalance(s, 0);
-  advance(s, 8);
+  move_until(s, 8);
   EXPECT_NEAR(imbalance(s, start), 0, 1e-8);
   EXPECT_LT(std::abs(s.energies().dissipated), 10 * 1e-6 * 9.81);
 }
@@ -264,11 +244,12 @@ TEST(Tendons, AreCaughtByAPeg) {
 TEST(Tendons, MayHaveCoincidingGuides) {
   for (const char* const between :
        {R"(<via link="world" at="1 0 0"/> <via link="b"/>)", R"(<via link="b"/> <via link="b"/>)"}) {
-    Simulation s = simulation_of(ball("a", 1, "0 0 0") + ball("b", 1, "1 0 0") +
-                                     fmt::format(R"(<tendon name="rope" ea="1e3" rest_length="1.2"> <via link="a"/> {}
+    Simulation s =
+        simulation_of_parts(ball("a", 1, "0 0 0") + ball("b", 1, "1 0 0") +
+                                fmt::format(R"(<tendon name="rope" ea="1e3" rest_length="1.2"> <via link="a"/> {}
                                                     <via link="world" at="2 0 0"/> </tendon>)",
-                                                 between),
-                                 kGravity);
+                                            between),
+                            kGravity);
     const double start = s.energies().total();
     for (int i = 0; i < 500; ++i) ASSERT_TRUE(s.step().converged) << i;
     // Round-off of positions over the smallest length, 1e-8 m, changes directions by 2e-8: that times the work of 30 N
@@ -279,7 +260,7 @@ TEST(Tendons, MayHaveCoincidingGuides) {
 
 // A line of which nothing is left stops the run.
 TEST(Tendons, CannotBeWoundUpWhole) {
-  Simulation s = simulation_of(ball("mass", 1, "0 0 -1") + R"(<tendon name="rope" ea="1e3" rest_length="1-t ">
+  Simulation s = simulation_of_parts(ball("mass", 1, "0 0 -1") + R"(<tendon name="rope" ea="1e3" rest_length="1-t ">
                                  <via link="world"/> <via link="mass"/> </tendon>)");
   bool converged = true;
   while (converged && s.time() < 2) converged = s.step().converged;
@@ -297,11 +278,11 @@ Simulation brake(double first, double second) {
                             <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>)",
                        name, mass, x);
   };
-  return simulation_of(mass("a", first, -0.1) + mass("b", second, 0.1) +
-                           R"(<tendon name="rope" ea="1e5" damping="300"> <via link="a"/>
+  return simulation_of_parts(mass("a", first, -0.1) + mass("b", second, 0.1) +
+                                 R"(<tendon name="rope" ea="1e5" damping="300"> <via link="a"/>
                               <pulley link="world" axis="0 1 0" radius="0.1" side="left" friction="0.25"/>
                               <via link="b"/> </tendon>)",
-                       kGravity);
+                             kGravity);
 }
 
 // The line slips where the ratio of tensions is E = exp(mu pi): m1 (g - a) = E m2 (g + a). It sticks at a smaller ratio
@@ -309,9 +290,9 @@ Simulation brake(double first, double second) {
 TEST(Tendons, SlipOverABrake) {
   Simulation slips = brake(6, 2);
   const double start = slips.energies().total(), ratio = std::exp(0.25 * kPi);
-  advance(slips, 0.2);
+  move_until(slips, 0.2);
   const double speed = slips.velocity(0);
-  advance(slips, 0.5);
+  move_until(slips, 0.5);
   const double acceleration = 9.81 * (6 - ratio * 2) / (6 + ratio * 2);
   EXPECT_NEAR((speed - slips.velocity(0)) / 0.3, acceleration, 1e-2 * acceleration);
   const double tension = column(slips, "tendon/rope/tension");
@@ -323,7 +304,7 @@ TEST(Tendons, SlipOverABrake) {
   EXPECT_NEAR(slips.energies().dissipated, (tension - tension / ratio) * -slips.position(0),
               0.05 * slips.energies().dissipated);
   Simulation sticks = brake(4, 2);
-  advance(sticks, 0.5);
+  move_until(sticks, 0.5);
   EXPECT_NEAR(sticks.velocity(0), 0, 1e-3);
   EXPECT_NEAR(sticks.position(0), 0, 4 * 9.81 / 1e5 * 2);  // its stretch
   EXPECT_NEAR(column(sticks, "tendon/rope/tension"), 4 * 9.81, 1e-2);
@@ -333,11 +314,11 @@ TEST(Tendons, SlipOverABrake) {
 // A line that stays taut: order 4 with em4.
 TEST(Tendons, HaveTheOrderOfTheScheme) {
   const auto end = [](double step) {
-    Simulation s = simulation_of(
+    Simulation s = simulation_of_parts(
         ball("mass", 5, "1.2 0 -2.2") + R"(<tendon name="rope" ea="2000" rest_length="2+0.5*cos(_pi*t/4) ">
                                            <via link="world"/> <via link="mass"/> </tendon>)",
         std::string(kGravity) + R"(<probe name="mass" link="mass"/>)", step, "em4");
-    advance(s, 2);
+    move_until(s, 2);
     return Vector3(s.probe_pose(0).position);
   };
   const Vector3 coarse = end(0.02), middle = end(0.01), fine = end(0.005);
@@ -346,9 +327,9 @@ TEST(Tendons, HaveTheOrderOfTheScheme) {
 
 // A mass falls 2 m on a slack rope, is caught and flies again: largest stretch and period in closed form.
 TEST(Tendons, CatchAFall) {
-  Simulation s = simulation_of(ball("mass", 10, "0 0 -1") + R"(<tendon name="rope" ea="20000" rest_length="3">
+  Simulation s = simulation_of_parts(ball("mass", 10, "0 0 -1") + R"(<tendon name="rope" ea="20000" rest_length="3">
                                  <via link="world"/> <via link="mass"/> </tendon>)",
-                               std::string(kGravity) + R"(<probe name="mass" link="mass"/>)");
+                                     std::string(kGravity) + R"(<probe name="mass" link="mass"/>)");
   const double start = s.energies().total();
   double longest = 0, least = 1e9;
   // Velocities follow from differences of positions: their round-off is epsilon |r| / step in each of n steps, so that
@@ -374,7 +355,7 @@ TEST(Tendons, KeepMomentaAndEnergy) {
                                  <initial link="b" linear="0.8 -0.2 0.1" angular="-0.5 1 2"/>
                                  <initial link="c" linear="-0.2 0.9 -0.4" angular="0.3 0.4 -1"/>)";
   for (const double step : {1e-3, 1e-2}) {
-    Simulation s = simulation_of(parts, options + R"(<gravity xyz="0 0 0"/>)", step);
+    Simulation s = simulation_of_parts(parts, options + R"(<gravity xyz="0 0 0"/>)", step);
     const double start = s.energies().total();
     const Vector3 momentum = s.momentum(), angular = s.angular_momentum();
     int slack = 0;
