@@ -53,8 +53,9 @@ TEST(AirDragRuns, HaveColumns) {
 const char* const kFlat = R"(<rectangle width="0.08" height="0.001"/>)";
 
 /// A free strip of steel, without gravity; `order` of its three elements, start as `initial` says.
-scene::SceneDescription flying_strip(int order, const std::string& section, const std::string& initial = "",
-                                     double step = 1e-3, double young = 2e11) {
+scene::SceneDescription flying_strip(int order, const std::string& section,
+                                     const std::string& initial = R"(linear="0 0 10")", double step = 1e-3,
+                                     double young = 2e11) {
   return scene_of_parts(
       fmt::format(R"(<joint name="free" type="floating"> <parent link="world"/> <child link="strip"/> </joint>
         <link name="strip"> <beam elements="3" order="{}"> <centerline> <line to="0.5 0 0"/> </centerline>
