@@ -15,6 +15,7 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
 std::vector<int> nodes_of(const std::vector<DragPlace>& places) {
   std::vector<int> nodes;
+  nodes.reserve(places.size());
   for (const DragPlace& place : places) nodes.push_back(place.point.node);
   return nodes;
 }
