@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -10,29 +11,40 @@
 
 #include "accuracy/scheme_tries.h"
 #include "flexarm/scene/scene_description.h"
+#include "integrators/explicit_step.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
 namespace {
 
-/// Schemes from which flexarm chooses if the scene leaves the choice to it: the default one, and one of higher order.
+/// Schemes from which flexarm chooses if the scene leaves the choice to it: the default one, one of higher order, and
+/// explicit ones, for what these can simulate.
 constexpr const char* kDefault = "em";
 constexpr const char* kHigherOrder = "em4";
-/// The scheme of higher order is considered once the error of the default scheme is known: if its estimate is below
-/// this.
-constexpr double kKnown = 0.1;
 /// Relative to an interval. If a corner is nearer than this to another end of a cell, no step has to end at it: the
 /// step then uses the mean of what acts.
 constexpr double kShortestCell = 1e-6;
+/// Further tries that a scheme needs at least as long as its error is not known, as a multiple of the next one: that
+/// one, and one with twice as many steps.
+constexpr double kTriesToKnow = 3;
 
-/// The simulation with the scheme of higher order, in the same state. None if the scene chooses its scheme, or if the
-/// other scheme cannot simulate the scene.
-std::optional<Simulation> of_higher_order(const Simulation& simulation) {
-  if (simulation.scene().integrator.scheme != "auto" || simulation.scheme() != kDefault) return std::nullopt;
+/// The schemes that a run may choose besides the simulation's own. None if the scene chooses its scheme.
+std::vector<const Scheme*> other_schemes(const Simulation& simulation) {
+  std::vector<const Scheme*> found;
+  if (simulation.scene().integrator.scheme != "auto" || simulation.scheme() != kDefault) return found;
+  if (!explicit_obstacle(model_of(simulation)))
+    for (const Scheme& scheme : explicit_schemes()) found.push_back(&scheme);
+  found.push_back(meanings(kHigherOrder).front());
+  return found;
+}
+
+/// The simulation with another scheme, in the same state. None if that scheme cannot simulate the scene.
+std::optional<Simulation> with_other_scheme(const Simulation& simulation, std::string_view scheme) {
   scene::SceneDescription scene = simulation.scene();
-  scene.integrator.scheme = kHigherOrder;
-  scene.starts_in_equilibrium = false;  // it goes on from the simulation's state
+  scene.integrator.scheme = scheme;
+  scene.starts_in_equilibrium = false;                                  // it goes on from the simulation's state
+  if (find_scheme(scheme)->tableau) scene.integrator.max_halvings = 0;  // a try with too long steps ends at once
   try {
     Simulation other(std::move(scene));
     other.take_over(simulation);
@@ -44,23 +56,54 @@ std::optional<Simulation> of_higher_order(const Simulation& simulation) {
   }
 }
 
+/// Tries of a scheme that the scene does not name. They are given up for good when they turn out badly.
+class Rival {
+ public:
+  explicit Rival(const Scheme& scheme) : scheme_(scheme) {}
+
+  /// Makes the tries, which begin at the state of `start`. Their first one is judged by the limit of `judge`. Returns
+  /// false if the scheme cannot simulate the scene.
+  bool make(const Simulation& start, const TryPlan& plan, const SchemeTries& judge) {
+    if (tries_) return true;
+    simulation_ = with_other_scheme(start, scheme_.name);
+    is_bad_ = !simulation_;
+    if (is_bad_) return false;
+    tries_.emplace(*simulation_, plan);
+    if (judge.judged() >= 2) tries_->judge_first_by(judge.limit());
+    return true;
+  }
+  const Scheme& scheme() const { return scheme_; }
+  bool is_bad() const { return is_bad_; }
+  void give_up() { is_bad_ = true; }
+  SchemeTries* tries() { return tries_ ? &*tries_ : nullptr; }
+  const SchemeTries* tries() const { return tries_ ? &*tries_ : nullptr; }
+
+ private:
+  const Scheme& scheme_;
+  std::optional<Simulation> simulation_;
+  std::optional<SchemeTries> tries_;
+  bool is_bad_ = false;
+};
+
 class TriesOfARun {
  public:
   TriesOfARun(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher)
-      : plan_(plan_of(simulation, request, watcher)), own_(simulation, plan_) {}
+      : plan_(plan_of(simulation, request, watcher)), own_(simulation, plan_) {
+    for (const Scheme* scheme : other_schemes(simulation)) rivals_.emplace_back(*scheme);
+  }
 
   AccurateRun run() {
-    for (SchemeTries* tries = &own_; may_try(tries->next_steps()); tries = &choose()) {
+    for (SchemeTries* tries = &choose(); may_try(tries->next_steps()); tries = &choose()) {
       const bool is_done = tries->attempt(run_);
       if (run_.end == AccurateRun::End::Interrupted) break;
-      if (is_done && tries->judge(run_) && (run_.end == AccurateRun::End::Met || tries == &own_)) break;
+      const bool is_over = is_done && tries->judge(run_);
+      if (is_over && (run_.end == AccurateRun::End::Met || tries == &own_)) break;
       const bool goes_on = tries->go_on(!is_done);
-      if (tries != &own_)
-        is_other_bad_ = !is_done || !goes_on || run_.end == AccurateRun::End::NoConvergence;
-      else if (!goes_on)
-        break;
+      if (tries == &own_ ? !goes_on : !keep(rival_of(*tries), is_done, goes_on, is_over)) break;
     }
-    if (other_ && run_.scheme() == kHigherOrder) own_.simulation().take_over(*simulation_of_other_);
+    for (Rival& rival : rivals_)
+      if (rival.tries() && run_.scheme() == rival.scheme().name)
+        own_.simulation().take_over(rival.tries()->simulation());
     return std::move(run_);
   }
 
@@ -96,38 +139,68 @@ class TriesOfARun {
     return has_tries && has_steps;
   }
 
-  /// The tries of the scheme that is expected to reach the accuracy with less work.
+  Rival& rival_of(const SchemeTries& tries) {
+    return *std::find_if(rivals_.begin(), rivals_.end(), [&](const Rival& rival) { return rival.tries() == &tries; });
+  }
+
+  /// Gives up the rival if it has no good try to come. A failure of a composition has other reasons than too long
+  /// steps. Returns false if no other scheme will do better, since only round-off is left.
+  bool keep(Rival& rival, bool is_done, bool goes_on, bool is_over) {
+    const bool is_explicit = rival.scheme().tableau != nullptr;
+    if (!goes_on || is_over || (!is_done && !is_explicit)) rival.give_up();
+    return !is_over || !is_explicit || !rival.tries()->is_small(rival.tries()->estimate());
+  }
+
+  /// The tries of the scheme that is expected to reach the accuracy with the least work.
   SchemeTries& choose() {
-    if (is_other_bad_ || !(own_.estimate() < kKnown)) return own_;
-    const double own = own_.predicted_iterations();
-    return own > iterations_of_other() && make_other() ? *other_ : own_;
-  }
-
-  /// Iterations that the other scheme is expected to need. They follow from the differences of its own tries, as soon
-  /// as there are any. Before, one step per interval is assumed if the limit of the simulation's scheme can judge that
-  /// try, and otherwise two tries, with one and with two steps.
-  double iterations_of_other() const {
-    if (other_ && other_->judged() >= 2) return other_->predicted_iterations();
-    if (other_ && other_->judged() == 1) return 2 * other_->iterations();
-    return (own_.limit_may_judge() ? 1 : 3) * own_.fewest_steps() * kCompositionSteps * own_.iterations_per_step();
-  }
-
-  bool make_other() {
-    if (other_) return true;
-    simulation_of_other_ = of_higher_order(own_.at_start());
-    is_other_bad_ = !simulation_of_other_;
-    if (simulation_of_other_) {
-      other_.emplace(*simulation_of_other_, plan_);
-      other_->judge_first_by(own_.limit());
+    Rival* best = nullptr;
+    double least = expected_cost(own_);
+    const auto consider = [&](Rival& rival, double cost) {
+      if (!rival.is_bad() && cost < least) best = &rival, least = cost;
+    };
+    for (Rival& rival : rivals_) {
+      if (rival.scheme().tableau) consider(rival, expected_cost_of_explicit(rival));
+      if (!rival.scheme().tableau && own_.is_known()) consider(rival, expected_cost_of_composition(rival));
     }
-    return !is_other_bad_;
+    if (!best) return own_;
+    return best->make(own_.at_start(), plan_, judge()) ? *best->tries() : choose();
+  }
+
+  /// As long as its error is not known, no scheme costs more than another one without a result.
+  double expected_cost(const SchemeTries& tries) const {
+    if (tries.is_known()) return tries.predicted_cost();
+    return tries.spent() + kTriesToKnow * tries.next_steps() * tries.cost_per_step();
+  }
+
+  double expected_cost_of_explicit(const Rival& rival) const {
+    if (rival.tries()) return expected_cost(*rival.tries());
+    return first_tries() * own_.fewest_steps() * cost_of_iteration(rival.scheme());
+  }
+
+  /// The cost follows from the differences of the scheme's own tries, as soon as there are any. Before, one step per
+  /// interval is assumed if the limit of another scheme can judge that try, and otherwise two tries, with one and with
+  /// two steps.
+  double expected_cost_of_composition(const Rival& rival) const {
+    if (rival.tries() && rival.tries()->judged() >= 2) return rival.tries()->predicted_cost();
+    if (rival.tries() && rival.tries()->judged() == 1) return 2 * rival.tries()->last_cost();
+    return first_tries() * own_.fewest_steps() * kCompositionSteps * own_.iterations_per_step();
+  }
+
+  double first_tries() const { return judge().judged() >= 2 && judge().limit_may_judge() ? 1 : kTriesToKnow; }
+
+  /// The tries whose limit is known best.
+  const SchemeTries& judge() const {
+    const SchemeTries* best = &own_;
+    for (const Rival& rival : rivals_)
+      if (rival.scheme().tableau && rival.tries() && rival.tries()->judged() >= 2 &&
+          !(best->judged() >= 2 && best->estimate() <= rival.tries()->estimate()))
+        best = rival.tries();
+    return *best;
   }
 
   TryPlan plan_;
   SchemeTries own_;
-  std::optional<Simulation> simulation_of_other_;
-  std::optional<SchemeTries> other_;
-  bool is_other_bad_ = false;
+  std::deque<Rival> rivals_;
   AccurateRun run_;
 };
 

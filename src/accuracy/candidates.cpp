@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "schemes/scheme.h"
+
 namespace flexarm {
 namespace {
 
@@ -14,6 +16,11 @@ double together(const MotionDifference& mesh, const MotionDifference& step) {
   if (step.size() == 0) return kInfinity;
   if (mesh.size() == 0) return size(step);
   return std::max({size(MotionDifference(mesh + step)), size(mesh), size(step)});
+}
+
+/// Whether an iteration is a step of an explicit scheme, not one of Newton's method.
+bool is_explicit(const RunSettings& settings) {
+  return find_scheme(settings.scheme)->tableau != nullptr;
 }
 
 }  // namespace
@@ -38,11 +45,12 @@ CandidatePool::CandidatePool(MeshErrors meshes, std::vector<StepErrors> steps, c
   fit_cost(runs);
 }
 
-/// Fits the cost of an iteration by least squares of relative deviations. Neither part becomes negative.
+/// Fits the cost of an iteration of Newton's method by least squares of relative deviations. Neither part becomes
+/// negative.
 void CandidatePool::fit_cost(const std::deque<TrialRun>& runs) {
   double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;
   for (const TrialRun& run : runs) {
-    if (!run.is_complete() || !(run.seconds > 0) || run.iterations == 0) continue;
+    if (!run.is_complete() || !(run.seconds > 0) || run.iterations == 0 || is_explicit(run.settings)) continue;
     const double y = run.seconds / static_cast<double>(run.iterations), a = 1 / y,
                  b = mesh_cost(run.settings.beams) / y;
     aa += a * a, ab += a * b, bb += b * b, ay += a, by += b;
@@ -57,8 +65,9 @@ void CandidatePool::fit_cost(const std::deque<TrialRun>& runs) {
 
 Candidate CandidatePool::candidate(const MeshChoice& mesh, const StepErrors& steps, int parts) const {
   const double iterations = intervals_ * parts * steps.iterations_per_step(parts);
+  const double of_one = is_explicit(steps.settings) ? steps.seconds_per_iteration() : fixed_ + per_cost_ * mesh.cost;
   return {mesh.beams, steps.settings.scheme, parts, together(mesh.error, steps.at(parts)) / scale_,
-          iterations * (fixed_ + per_cost_ * mesh.cost)};
+          iterations * of_one};
 }
 
 std::vector<Candidate> CandidatePool::cheapest(double accuracy) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -55,8 +56,10 @@ double effort_limit(const Model& model, const Actuator& actuator) {
   return std::min(limit, actuator.servo->effort_limit);
 }
 
-/// Whether forces may jump at times that cannot be foreseen.
-bool may_have_events(const Model& model) {
+/// Whether forces may jump at times that cannot be foreseen, and steps can find these.
+bool may_have_events(const Simulation& simulation) {
+  if (scheme_of(simulation).tableau) return false;
+  const Model& model = model_of(simulation);
   const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
     return c.limit || c.friction > 0 || c.friction_coefficient > 0;
   });
@@ -85,7 +88,7 @@ std::vector<double> known_corners(const Simulation& simulation, double begin, do
 }
 
 LocatedSteps::LocatedSteps(Simulation& simulation, std::vector<double> cells)
-    : simulation_(simulation), cells_(std::move(cells)), has_events_(may_have_events(model_of(simulation))) {
+    : simulation_(simulation), cells_(std::move(cells)), has_events_(may_have_events(simulation)) {
   for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "flexarm/scene/scene_description.h"
-#include "schemes/scheme.h"
+#include "schemes/explicit_tableau.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -30,6 +30,8 @@ constexpr double kSurprise = 2;
 /// for which the first tries are far too coarse. For errors below kRoundOffBelow one such try is enough, since they are
 /// round-off.
 constexpr double kRoundOffBelow = 1e-6;
+/// The same for explicit schemes, which have no remainders of Newton's method.
+constexpr double kExplicitRoundOffBelow = 1e-10;
 constexpr int kMostStagnations = 6;
 /// If a node turns by more than this in a step, its rotation lags so much that the error need not fall, and steps of
 /// different lengths may even agree, after both were halved [rad]. (docs/notes/beyond.md 1.4)
@@ -49,6 +51,12 @@ constexpr double kRemainderShare = 0.1;
 /// Points that move by less than this part of the model's length scale are at rest: their motion is round-off, or a
 /// remainder of the start.
 constexpr double kAtRest = 1e-6;
+/// An error is known once its estimate is below this.
+constexpr double kKnown = 0.1;
+/// Time of an evaluation of an explicit scheme over that of an iteration of Newton's method. (accuracy.md 3)
+constexpr double kEvaluation = 0.15;
+/// Iterations of a step of an implicit scheme, as long as no try has shown them.
+constexpr double kIterations = 2.5;
 /// Schemes of higher order are first assumed to have this order, until their own tries show more.
 constexpr double kCommonOrder = 2;
 
@@ -70,19 +78,35 @@ JudgedMotion extrapolated(JudgedMotion fine, const JudgedMotion& coarse, double 
 
 }  // namespace
 
+double cost_of_iteration(const Scheme& scheme) {
+  return scheme.tableau ? kEvaluation * static_cast<double>(scheme.tableau->weights.size()) : 1;
+}
+
 SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
     : simulation_(simulation),
       plan_(plan),
       start_(simulation.snapshot()),
-      order_(make_scheme(simulation.scene().integrator).order),
-      solves_(make_scheme(simulation.scene().integrator).solves_per_step()),
+      scheme_(make_scheme(simulation.scene().integrator)),
       stepping_(simulation, plan.cells),
       before_(plan.points.size()),
       earlier_(plan.points.size()) {}
 
-double SchemeTries::predicted_iterations() const {
-  const double growth = std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_);
-  return iterations_before_ * std::max(growth, kLeastGrowth);
+double SchemeTries::predicted_cost() const {
+  const double growth = std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / scheme_.order);
+  return last_cost() * std::max(growth, kLeastGrowth);
+}
+
+double SchemeTries::cost_per_step() const {
+  const double first = scheme_.tableau ? 1 : kIterations * scheme_.solves_per_step();
+  return cost_of_iteration(scheme_) * (std::isnan(iterations_before_) ? first : iterations_per_step());
+}
+
+bool SchemeTries::is_small(double estimate) const {
+  return estimate < (scheme_.tableau ? kExplicitRoundOffBelow : kRoundOffBelow);
+}
+
+bool SchemeTries::is_known() const {
+  return judged_ >= 2 && estimate_ < kKnown;
 }
 
 bool SchemeTries::limit_may_judge() const {
@@ -92,16 +116,17 @@ bool SchemeTries::limit_may_judge() const {
 
 void SchemeTries::set_steps() {
   planned_ = stepping_.planned(steps_);
-  const double remainder = kRemainderShare * plan_.request.accuracy / std::pow(planned_ * solves_, 1.5);
+  const double remainder =
+      kRemainderShare * plan_.request.accuracy / std::pow(planned_ * scheme_.solves_per_step(), 1.5);
   stepping_.set(steps_, std::sqrt(remainder));
 }
 
 /// The order that is assumed for an estimate. `difference`: between the last try and the one before, relative.
 double SchemeTries::supposed_order(double difference) const {
-  if (order_ <= kCommonOrder) return order_;
+  if (scheme_.order <= kCommonOrder) return scheme_.order;
   if (std::isnan(difference_)) return kCommonOrder;
   const double seen = std::log(difference_ / difference) / std::log(planned_before_ / planned_earlier_);
-  return std::clamp(seen, 1.0, static_cast<double>(order_));
+  return std::clamp(seen, 1.0, static_cast<double>(scheme_.order));
 }
 
 /// The error of the last try over its difference from a try with `planned` steps.
@@ -120,7 +145,10 @@ bool SchemeTries::attempt(AccurateRun& run) {
   run.motion = JudgedMotion(plan_.points.size());
   const long steps = run.steps;
   for (int i = 0; i <= plan_.request.intervals; ++i) {
-    if (i > 0 && !stepping_.advance_to(plan_.judged_time(i), plan_.watcher, run)) return false;
+    const bool is_there = i == 0 || stepping_.advance_to(plan_.judged_time(i), plan_.watcher, run);
+    if (!is_there || i == plan_.request.intervals)
+      spent_ += static_cast<double>(stepping_.iterations) * cost_of_iteration(scheme_);
+    if (!is_there) return false;
     const std::vector<Vector3> positions = plan_.points.positions(simulation_);
     run.motion.add(positions);
     const JudgedMotion* other = compared();
@@ -155,7 +183,7 @@ bool SchemeTries::judge(AccurateRun& run) {
   const bool is_compared = judged_++ > 0;
   if (is_compared) {
     run.tries.back().estimate = estimate_ = estimate_of(run.motion, run.scale);
-    limit_ = extrapolated(run.motion, before_, share(order_, planned_before_));
+    limit_ = extrapolated(run.motion, before_, share(scheme_.order, planned_before_));
   } else if (other_limit_) {
     run.tries.back().estimate = motion_error(run.motion, *other_limit_, run.scale);
   }
@@ -173,7 +201,7 @@ bool SchemeTries::judge(AccurateRun& run) {
   const bool is_better = !(estimate_ > 0.5 * last), is_resolved = stepping_.turn <= kResolvedTurn;
   stagnations_ = is_better || !is_resolved ? 0 : stagnations_ + 1;
   unsettled_ = is_better ? std::max(unsettled_ - 1, 0) : kUnsettled;
-  const bool may_be_round_off = last < kRoundOffBelow && was_resolved_;
+  const bool may_be_round_off = is_small(last) && was_resolved_;
   was_resolved_ = is_resolved;
   if (stagnations_ < (may_be_round_off ? 1 : kMostStagnations)) return false;
   run.end = AccurateRun::End::NoConvergence;
@@ -187,12 +215,12 @@ bool SchemeTries::go_on(bool failed) {
   if (!failed && is_useless)
     growth = kLeastGrowth;
   else if (!failed && !std::isnan(estimate_))
-    growth = std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_), kLeastGrowth,
+    growth = std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / scheme_.order), kLeastGrowth,
                         most_growth(estimate_));
   next_ = static_cast<int>(std::min(std::ceil(growth * steps_), kMostInCell));
   // Two tries with nested steps may be wrong in the same places.
   if (steps_ > 1 && next_ % steps_ == 0) ++next_;
-  expected_ = estimate_ * std::pow(planned_before_ / stepping_.planned(next_), order_);
+  expected_ = estimate_ * std::pow(planned_before_ / stepping_.planned(next_), scheme_.order);
   return failures_ <= kMostFailures;
 }
 

@@ -6,6 +6,7 @@
 
 #include "accuracy/located_steps.h"
 #include "flexarm/accuracy/accurate_run.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 
@@ -20,6 +21,10 @@ struct TryPlan {
   double interval() const { return (request.until - begin) / request.intervals; }  ///< [s]
   double judged_time(int i) const { return i == request.intervals ? request.until : begin + i * interval(); }
 };
+
+/// Cost of what StepResult counts as an iteration, relative to an iteration of Newton's method. For an explicit scheme
+/// it is a step.
+double cost_of_iteration(const Scheme& scheme);
 
 class SchemeTries {
  public:
@@ -39,9 +44,18 @@ class SchemeTries {
   /// Iterations of the last judged try.
   double iterations() const { return iterations_before_; }
   double iterations_per_step() const { return iterations_before_ / planned_before_; }
-  /// Predicted iterations of a try with the requested error; NaN: unknown.
-  double predicted_iterations() const;
+  /// Predicted cost of a try with the requested error, in iterations of Newton's method or what takes as long. NaN:
+  /// unknown.
+  double predicted_cost() const;
+  /// Cost of the last judged try, of a step of the next one, and of all tries so far.
+  double last_cost() const { return iterations_before_ * cost_of_iteration(scheme_); }
+  double cost_per_step() const;
+  double spent() const { return spent_; }
   int judged() const { return judged_; }
+  /// Whether the error is known: from here on it is expected to fall with the order of the scheme.
+  bool is_known() const;
+  /// Whether an error of this size may be round-off.
+  bool is_small(double estimate) const;
 
   /// Extrapolation of the last two judged tries, without the leading term of their errors.
   const JudgedMotion& limit() const { return limit_; }
@@ -76,7 +90,7 @@ class SchemeTries {
   bool is_confirmed() const { return judged_ > 2 || (judged_ == 1 && other_limit_); }
   /// What the next try is compared to (null: nothing), and the part of the difference that is its error.
   const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
-  double compared_share() const { return judged_ > 0 ? share(order_, planned_before_) : 1; }
+  double compared_share() const { return judged_ > 0 ? share(scheme_.order, planned_before_) : 1; }
   double supposed_order(double difference) const;
   double share(double order, double planned) const;
   double estimate_of(const JudgedMotion& motion, double scale);
@@ -84,7 +98,8 @@ class SchemeTries {
   Simulation& simulation_;
   const TryPlan& plan_;
   Snapshot start_;
-  int order_, solves_;  // order, and solves per step
+  Scheme scheme_;
+  double spent_ = 0;
   LocatedSteps stepping_;
   int steps_ = 0, next_ = 1;  // in the longest cell, in the last and in the next try
   double planned_ = 0;        // steps of the last try

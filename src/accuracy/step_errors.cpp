@@ -21,7 +21,7 @@ constexpr int kIdleRuns = 3;
 
 /// The smallest ratio of successive differences, when the step is halved.
 double ratio_of(const RunSettings& settings) {
-  int order = 4;
+  int order = 8;
   for (const Scheme* scheme : meanings(settings.scheme)) order = std::min(order, scheme->order);
   return std::pow(0.5, order);
 }
@@ -51,6 +51,13 @@ double StepErrors::iterations_per_step(int wanted) const {
     if (runs[i]->is_complete() && (found == 0 || parts[i] <= wanted))
       found = static_cast<double>(runs[i]->iterations) / static_cast<double>(runs[i]->steps);
   return found;
+}
+
+double StepErrors::seconds_per_iteration() const {
+  double seconds = 0, iterations = 0;
+  for (const TrialRun* run : runs)
+    if (run->is_complete()) seconds += run->seconds, iterations += static_cast<double>(run->iterations);
+  return seconds / iterations;
 }
 
 namespace {

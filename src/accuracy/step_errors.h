@@ -25,6 +25,8 @@ struct StepErrors {
   MotionDifference at(int parts) const;
   /// Iterations per step, from the nearest run that is not finer.
   double iterations_per_step(int parts) const;
+  /// Processor time of an iteration in all complete runs [s].
+  double seconds_per_iteration() const;
 };
 
 /// Starts with one step in an interval, and halves it until the error is at most `wanted` times the largest

@@ -7,6 +7,9 @@
 
 #include "accuracy/processor_time.h"
 #include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/run_summary.h"
+#include "schemes/scheme.h"
+#include "simulation/inside.h"
 
 namespace flexarm {
 
@@ -82,6 +85,8 @@ void TrialRuns::step_through(Simulation& simulation, TrialRun& run, double most_
   run.motion.add(judged.positions(simulation));
   const long stride = std::lround(times_.interval / run.settings.step);
   const double all_before = seconds_;
+  const bool drifts = scheme_of(simulation).tableau != nullptr;
+  RunSummary summary(simulation);
   for (int interval = 0; interval < times_.intervals; ++interval) {
     const double begin = processor_seconds();
     for (long i = 0; i < stride; ++i) {
@@ -98,6 +103,10 @@ void TrialRuns::step_through(Simulation& simulation, TrialRun& run, double most_
     seconds_ = all_before + run.seconds;
     if (!run.failure.empty()) return;
     run.motion.add(judged.positions(simulation));
+    if (drifts) {
+      summary.look(simulation);
+      run.energy_drift = summary.energy_drift();
+    }
     if (run.seconds > most_seconds) {
       run.is_given_up = true;
       run.failure =

@@ -32,6 +32,7 @@ struct TrialRun {
   long steps = 0, iterations = 0;
   int halvings = 0;
   std::size_t unknowns = 0;
+  double energy_drift = 0;   ///< of an explicit scheme, see RunSummary
   std::string failure;       ///< why it has not reached its end; empty if it has
   bool is_given_up = false;  ///< because it took too long
 

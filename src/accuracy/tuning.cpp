@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include "accuracy/candidates.h"
+#include "flexarm/model/model_error.h"
+#include "integrators/explicit_step.h"
 #include "schemes/scheme.h"
+#include "simulation/inside.h"
 
 namespace flexarm {
 namespace {
@@ -46,6 +49,14 @@ double tolerance_for(double accuracy) {
   for (const double next : kTolerances)
     if (1000 * next * next <= 0.0101 * accuracy) tolerance = next;
   return tolerance;
+}
+
+bool suits_explicit_schemes(const scene::SceneDescription& scene) {
+  try {
+    return explicit_obstacle(model_of(Simulation(scene))) == nullptr;
+  } catch (const ModelError&) {
+    return false;
+  }
 }
 
 /// The search, stage by stage. The result so far can be taken at any time.
@@ -91,6 +102,7 @@ class Search {
   const TuningGoal& goal_;
   const TuningFreedom& freedom_;
   const TuningProgress& progress_;
+  bool is_for_explicit_ = false;
   const TrialRun* as_it_stands_ = nullptr;
   const TrialRun* reference_ = nullptr;
   CandidatePool pool_;
@@ -124,6 +136,7 @@ void Search::look_at_scene() {
   progress_(0, "the scene as it stands");
   as_it_stands_ = &trials_.run(own());
   if (!as_it_stands_->is_complete()) shortcomings_.push_back("the scene as it stands: " + as_it_stands_->failure);
+  is_for_explicit_ = suits_explicit_schemes(trials_.scene());
 }
 
 // Measures errors of meshes and steps, as finely as the accuracy requires.
@@ -150,6 +163,7 @@ void Search::measure(double accuracy) {
   settings.beams = cheapest_mesh(mesh_choices(mesh_errors), 0.5 * accuracy * scale).beams;
   std::vector<StepErrors> steps;
   for (const std::string& scheme : schemes) {
+    if (find_scheme(scheme)->tableau && !is_for_explicit_) continue;
     progress_(0.4 + 0.3 * static_cast<double>(steps.size()) / static_cast<double>(schemes.size()),
               "steps of " + scheme);
     settings.scheme = scheme;
@@ -246,7 +260,7 @@ void Search::try_finalists(double accuracy) {
 void Search::loosen_tolerance() {
   for (const double tolerance : kTolerances) {
     const TrialRun* before = best();
-    if (!before) return;
+    if (!before || find_scheme(before->settings.scheme)->tableau) return;
     if (before->settings.tolerance >= tolerance) continue;
     progress_(0.87, "tolerances");
     RunSettings settings = before->settings;
@@ -332,8 +346,9 @@ TuningResult Search::result(const std::string& ended) {
     shortcomings_.emplace_back("there is no reference run: errors are relative to the finest run");
   for (const TrialRun& run : trials_.all()) {
     const double off = reference_ && run.is_complete() ? error(run) : 0;
-    TunedRun row{run.settings, seconds_of(run), times_.count(&run) > 0, run.steps, run.iterations, run.unknowns,
-                 off,          run.failure};
+    TunedRun row{run.settings,   seconds_of(run), times_.count(&run) > 0, run.steps,
+                 run.iterations, run.unknowns,    run.energy_drift,       off,
+                 run.failure};
     if (&run == chosen) out.best = out.runs.size();
     out.runs.push_back(std::move(row));
   }
@@ -368,6 +383,9 @@ std::vector<std::string> schemes_alike(const IntegratorDescription& integrator, 
     if (own.name == name || integrator.scheme == name) continue;
     if (any || is_alike(*find_scheme(name))) names.emplace_back(name);
   }
+  if (any || (integrator.scheme == "auto" && own.conserves_energy))
+    for (const Scheme& scheme : explicit_schemes())
+      if (own.name != scheme.name) names.emplace_back(scheme.name);
   if (any)
     for (const char* name : {"edmc2", "newmark", "m1"})
       if (own.name != name) names.emplace_back(name);

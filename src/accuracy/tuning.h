@@ -30,8 +30,9 @@ struct TunedRun {
   bool is_timed = false;
   long steps = 0, iterations = 0;
   std::size_t unknowns = 0;
-  double error = 0;     ///< relative to the largest displacement, against the reference; only of a complete run
-  std::string failure;  ///< empty if the run is complete
+  double energy_drift = 0;  ///< of an explicit scheme, see RunSummary
+  double error = 0;         ///< relative to the largest displacement, against the reference; only of a complete run
+  std::string failure;      ///< empty if the run is complete
 };
 
 struct TuningResult {
@@ -54,7 +55,8 @@ TuningResult tune(TrialRuns& trials, const TuningGoal& goal, const TuningFreedom
                   const TuningProgress& progress);
 
 /// Names of the schemes that conserve at least what the scene's scheme does, which comes first. A scheme that
-/// dissipates or is for study has no such others. `any`: all schemes for common use.
+/// dissipates or is for study has no such others. If the scene leaves the choice to flexarm, explicit schemes follow,
+/// which conserve nothing exactly. `any`: all schemes for common use.
 std::vector<std::string> schemes_alike(const IntegratorDescription& integrator, bool any);
 
 }  // namespace flexarm

@@ -157,11 +157,27 @@ SpeedProblem six_joint_arm() {
   return p;
 }
 
+SpeedProblem humanoid() {
+  SpeedProblem p{"humanoid",
+                 "Free swing of a rigid tree of 30 joints",
+                 "speed/humanoid.urdf",
+                 "",
+                 "tip",
+                 1,
+                 0.02,
+                 {"dop853", 0, 0, 0.02 / 16},
+                 {}};
+  add_product(p, {"em", "em4"}, {{0, 0}}, {1, 2, 4, 8, 16}, {kTight, kLoosest});
+  add_product(p, {"rk4", "dop853"}, {{0, 0}}, {1, 2, 3, 4, 5, 8, 10, 20}, {kTight});
+  p.note = "Five limbs at a trunk. Other programs read the same file.";
+  return p;
+}
+
 }  // namespace
 
 std::vector<SpeedProblem> speed_problems() {
-  return {spin_up(),  right_angle_cantilever(), flying_spaghetti(), double_pendulum(),
-          demo_arm(), sliding_mass(),           tendon_rod(),       six_joint_arm()};
+  return {spin_up(),    right_angle_cantilever(), flying_spaghetti(), double_pendulum(), demo_arm(), sliding_mass(),
+          tendon_rod(), six_joint_arm(),          humanoid()};
 }
 
 std::vector<SpeedTarget> speed_targets() {
@@ -174,7 +190,7 @@ std::vector<SpeedTarget> speed_targets() {
 }
 
 std::vector<PeerTarget> peer_targets() {
-  return {{"six_joint_arm", "RK4", 1e-3, 0.5}, {"six_joint_arm", "RK4", 1e-6, 0.5}};
+  return {{"six_joint_arm", "RK4", 1e-3, 0.5}, {"six_joint_arm", "RK4", 1e-6, 0.5}, {"humanoid", "RK4", 1e-3, 0.7}};
 }
 
 std::vector<RealTimeScene> real_time_scenes() {

@@ -15,6 +15,7 @@
 #include "cli/progress_bar.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/scene/scene_description.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::cli {
 
@@ -73,6 +74,11 @@ ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, 
 
 namespace {
 
+/// Whether the scheme conserves nothing, so that the report tells how energy drifts.
+bool is_explicit(const Simulation& simulation) {
+  return find_scheme(simulation.scheme())->tableau != nullptr;
+}
+
 /// Writes the rows of each try over those of the last one, and shows progress.
 class TryOutput : public RunWatcher {
  public:
@@ -98,7 +104,10 @@ class TryOutput : public RunWatcher {
   void after_interval(const Simulation& simulation, double estimate) override {
     if (last_) last_->error_estimate = estimate;
     note_last(simulation);
-    if (output_) output_->write_row(simulation);
+    if (output_)
+      output_->write_row(simulation);
+    else if (is_explicit(simulation))
+      run_.summary.look(simulation);
   }
 
   void close(const Simulation& simulation) {
@@ -165,6 +174,13 @@ std::string scale_text(const AccurateRun& run) {
 
 }  // namespace
 
+std::string drift_text(const std::string& scheme, double drift) {
+  if (!find_scheme(scheme)->tableau) return "";
+  return fmt::format(
+      "{} conserves no energy: energy - work + dissipation drifted by up to {:.2g} of the largest energy\n", scheme,
+      drift);
+}
+
 std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const Simulation& simulation) {
   if (arguments.accuracy) return arguments.accuracy;
   return arguments.options.step ? std::nullopt : simulation.scene().integrator.accuracy;
@@ -195,9 +211,9 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
   else if (run.is_accurate && !arguments.quiet)
     fmt::print(report_stream(arguments),
                "accuracy {:g} requested, error {:.2g} estimated, relative to {}; {} steps of {}; {} tries, {} steps in "
-               "total\n",
+               "total\n{}",
                accuracy, result.estimate() + meshes.error, scale_text(result), result.tries.back().steps,
-               result.scheme(), result.tries.size(), result.steps);
+               result.scheme(), result.tries.size(), result.steps, drift_text(run.scheme, run.summary.energy_drift()));
   return run;
 }
 

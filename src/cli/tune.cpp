@@ -8,6 +8,7 @@
 
 #include "accuracy/run_settings.h"
 #include "accuracy/tuning.h"
+#include "cli/accurate_simulation.h"
 #include "cli/commands.h"
 #include "cli/effort_schedule.h"
 #include "cli/files.h"
@@ -86,6 +87,7 @@ void print_result(const TuneArguments& arguments, const TuningResult& result, co
   if (result.reference) fmt::print(", whose own error is {:.2g}", result.reference_error);
   fmt::print("; 1 is {:.4g} m\n", result.scale);
   fmt::print("{:.3g} times real time\n", times.until() / best.seconds);
+  fmt::print("{}", drift_text(best.settings.scheme, best.energy_drift));
   if (!result.is_met)
     fmt::print("{} cannot be met; this is the most accurate run that was found\n",
                arguments.accuracy ? fmt::format("an error of {:g}", *arguments.accuracy)

@@ -11,23 +11,22 @@
 #include "joints/joint_forces.h"
 #include "joints/joint_kinematics.h"
 #include "math/so3.h"
+#include "model/carried_origin.h"
 #include "schemes/explicit_tableau.h"
 
 namespace flexarm {
-namespace {
 
-/// Returns what explicit schemes cannot simulate in a model, in words; null: nothing.
-const char* obstacle(const Model& model) {
+const char* explicit_obstacle(const Model& model) {
   bool has_beams = false;
   for_each_element(model.beams, [&](const auto&) { has_beams = true; });
   if (has_beams) return "flexible links";
   if (!model.slide_lines.empty()) return "sliders";
-  if (!model.closures.empty()) return "closed loops";
   if (!model.force_elements.empty()) return "springs, lines or contacts between points, or drag";
   if (!model.held.empty()) return "joints that a motion holds";
   for (const Coordinate& coordinate : model.coordinates) {
-    if (coordinate.motion >= 0) return "prescribed motions";
-    if (coordinate.mimicked >= 0) return "coordinates that follow others";
+    const bool depends = coordinate.motion >= 0 || coordinate.mimicked >= 0;
+    if (depends && model.joints[coordinate.joint].kind != JointMapKind::Scalar)
+      return "prescribed motions of floating joints";
     if (coordinate.sticks && coordinate.friction > 0) return "dry friction";
     if (coordinate.friction_coefficient > 0) return "friction that depends on the load";
   }
@@ -43,13 +42,19 @@ const char* obstacle(const Model& model) {
   return nullptr;
 }
 
+namespace {
+
 /// @throws ModelError naming what explicit schemes cannot simulate, if the model has some of it
 const Model& suitable(const Model& model, const Scheme& scheme) {
-  if (const char* what = obstacle(model))
+  if (const char* what = explicit_obstacle(model))
     throw ModelError(fmt::format(
         "<integrator>: scheme '{}' has no {}; take one of the energy-momentum family, such as em", scheme.name, what));
   return model;
 }
+
+/// Relative to a step: how far from its ends functions of time are evaluated to find their limits there. It is far
+/// above the round-off of times at which functions jump.
+constexpr double kInwards = 1e-9;
 
 int position_count(JointMapKind kind) {
   switch (kind) {
@@ -70,10 +75,18 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
     : model_(suitable(model, scheme)),
       tableau_(*scheme.tableau),
       bodies_(model),
+      dependent_(model, bodies_, tableau_),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
-      applied_(model.coordinates.size()) {
+      applied_(model.coordinates.size()),
+      values_(model.histories.size()) {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const std::optional<double> constant = model.histories[i].constant();
+    if (!constant) varying_.push_back(static_cast<int>(i));
+    values_[i] = constant.value_or(0);
+  }
+  last_values_ = values_;
   for (const JointMap& joint : model.joints) {
     joints_.push_back({static_cast<int>(rates_), bodies_.first_rate(static_cast<int>(joints_.size())), joint.kind});
     rates_ += position_count(joint.kind);
@@ -85,7 +98,7 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
     armatures_[joints_[coordinate.joint].first_rate + coordinate.component] = armature(model, coordinate);
     penalties_.push_back(stop_penalty(coordinate, scheme.contact_time));
   }
-  for (std::vector<double>* numbers : {&begin_, &stage_, &last_change_}) numbers->resize(work_ + 2);
+  for (std::vector<double>* numbers : {&begin_, &stage_, &before_, &last_change_}) numbers->resize(work_ + 2);
   changes_.assign(tableau_.weights.size(), std::vector<double>(work_ + 2));
   last_commands_.resize(model.coordinates.size());
 }
@@ -98,13 +111,19 @@ void ExplicitStep::pack(const State& state) {
     velocities_[i] = spatial_velocity(state.nodes[i]);
   }
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const Released& released = state.released[j];
-    double* to = begin_.data() + joints_[j].first_position;
-    if (joints_[j].kind == JointMapKind::Scalar) *to++ = released.displacement[0];
-    if (joints_[j].kind == JointMapKind::Free) to = std::copy_n(released.displacement.data(), 3, to);
-    if (position_count(joints_[j].kind) >= 4) std::copy_n(released.rotation.coeffs().data(), 4, to);
-    const ReleasedVector rates = released_rates(model_, static_cast<int>(j), poses_, released, velocities_);
+    released_[j] = state.released[j];
+    const ReleasedVector rates = released_rates(model_, static_cast<int>(j), poses_, released_[j], velocities_);
     std::copy_n(rates.data(), released_count(joints_[j].kind), begin_.data() + rates_ + joints_[j].first_rate);
+  }
+  write_positions(begin_);
+}
+
+void ExplicitStep::write_positions(std::vector<double>& numbers) const {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    double* to = numbers.data() + joints_[j].first_position;
+    if (joints_[j].kind == JointMapKind::Scalar) *to++ = released_[j].displacement[0];
+    if (joints_[j].kind == JointMapKind::Free) to = std::copy_n(released_[j].displacement.data(), 3, to);
+    if (position_count(joints_[j].kind) >= 4) std::copy_n(released_[j].rotation.coeffs().data(), 4, to);
   }
 }
 
@@ -139,6 +158,7 @@ bool ExplicitStep::is_as_left(const State& state) const {
 
 /// Whether the derivatives at the end of the last step hold at the beginning of this one.
 bool ExplicitStep::acts_as_before(const State& state) const {
+  if (values_ != last_values_ || dependent_.has_motions()) return false;
   const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   return state.time == last_time_ && state.wrenches.empty() &&
          std::equal(state.commands.begin(), state.commands.end(), last_commands_.begin(), same);
@@ -146,15 +166,41 @@ bool ExplicitStep::acts_as_before(const State& state) const {
 
 // ---------------------------------------------------------------- derivatives
 
-void ExplicitStep::evaluate(const State& state, double time, const std::vector<double>& numbers,
-                            std::vector<double>& change) {
+/// Evaluates all functions of time at a part of a step. At its ends these are the limits from inside, since functions
+/// may jump there: found by a straight line through two points inside, whose error is far below round-off.
+void ExplicitStep::find_values(double begin, double step, double part) {
+  const double time = begin + part * step, inwards = part == 0 ? kInwards * step : part == 1 ? -kInwards * step : 0;
+  for (const int i : varying_) {
+    const TimeFunction& function = model_.histories[i];
+    values_[i] = inwards == 0 ? function(time) : 2 * function(time + inwards) - function(time + 2 * inwards);
+  }
+}
+
+/// Sets the bodies to these numbers, in which it sets dependent coordinates.
+bool ExplicitStep::place(std::size_t stage, std::vector<double>& numbers) {
   unpack(numbers);
+  double* rates = numbers.data() + rates_;
+  if (!dependent_.any()) {
+    bodies_.set(released_, rates);
+    return true;
+  }
+  const bool is_closed = dependent_.place(stage, values_, released_, rates, bodies_);
+  write_positions(numbers);
+  return is_closed;
+}
+
+bool ExplicitStep::evaluate(const State& state, std::size_t stage, std::vector<double>& numbers,
+                            std::vector<double>& change) {
+  if (!place(stage, numbers)) return false;
   const double* rates = numbers.data() + rates_;
-  bodies_.set(released_, rates);
   change[work_] = change[work_ + 1] = 0;
-  add_loads(state, time, change);
-  find_efforts(state, time, rates, change);
-  bodies_.accelerate(efforts_.data(), armatures_.data(), change.data() + rates_);
+  add_loads(state, change);
+  find_efforts(state, rates, change);
+  if (dependent_.any())
+    dependent_.accelerate(stage, efforts_.data(), armatures_.data(), bodies_, change.data() + rates_);
+  else
+    bodies_.accelerate(efforts_.data(), armatures_.data(), change.data() + rates_);
+  add_drives(rates, change);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double* rate = rates + joints_[j].first_rate;
     double* to = change.data() + joints_[j].first_position;
@@ -168,16 +214,30 @@ void ExplicitStep::evaluate(const State& state, double time, const std::vector<d
     const Quaternion half(0, 0.5 * rate[0], 0.5 * rate[1], 0.5 * rate[2]);
     std::copy_n((half * released_[j].rotation).coeffs().data(), 4, to);
   }
+  return true;
+}
+
+/// Sets the efforts of motions, and adds their work to `change`.
+void ExplicitStep::add_drives(const double* rates, std::vector<double>& change) {
+  if (!dependent_.has_motions()) return;
+  for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
+    const Coordinate& coordinate = model_.coordinates[i];
+    if (coordinate.motion < 0) continue;
+    const int at = joints_[coordinate.joint].first_rate + coordinate.component;
+    applied_[i] = dependent_.drive(at);
+    change[work_] += applied_[i] * rates[at];
+  }
 }
 
 /// Sets the efforts on all rates. Adds their work and what they dissipate to `change`.
-void ExplicitStep::find_efforts(const State& state, double time, const double* rates, std::vector<double>& change) {
+void ExplicitStep::find_efforts(const State& state, const double* rates, std::vector<double>& change) {
   for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
     const Coordinate& coordinate = model_.coordinates[i];
     const int at = joints_[coordinate.joint].first_rate + coordinate.component;
     const double rate = rates[at];
-    const double of_scene = coordinate.effort < 0 ? 0 : model_.histories[coordinate.effort](time);
+    const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
     applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
+    if (coordinate.motion >= 0) applied_[i] = 0;  // until the motion is known to need one
     double& effort = efforts_[at] = applied_[i];
     change[work_] += applied_[i] * rate;
     const double position = coordinate.is_angle ? 0 : released_[coordinate.joint].displacement[coordinate.component];
@@ -197,32 +257,67 @@ void ExplicitStep::find_efforts(const State& state, double time, const double* r
   }
 }
 
-void ExplicitStep::add_loads(const State& state, double time, std::vector<double>& change) {
-  for (const NodalLoad& load : model_.loads) add_load(load, model_.histories[load.history](time), change);
-  for (const NodalLoad& load : state.wrenches) add_load(load, 1, change);
+void ExplicitStep::add_loads(const State& state, std::vector<double>& change) {
+  for (const NodalLoad& load : model_.loads) add_load(load, values_[load.history], change);
+  for (const NodalLoad& load : state.wrenches) {
+    add_load(load, 1, change);
+    if (load.pull.acts()) add_pull(load, world_origin(model_, state), change);
+  }
 }
 
 void ExplicitStep::add_load(const NodalLoad& load, double scale, std::vector<double>& change) {
   const Matrix3& rotation = bodies_.rotation(load.node);
-  const Vector6 wrench = load_action(load, scale, rotation, rotation, LoadPoint::End).wrench;
-  bodies_.add_force(load.node, wrench);
-  change[work_] += wrench.dot(bodies_.velocity(load.node));
+  add_wrench(load.node, load_action(load, scale, rotation, rotation, LoadPoint::End).wrench, change);
+}
+
+void ExplicitStep::add_pull(const NodalLoad& load, const Vector3& origin, std::vector<double>& change) {
+  const Vector3 arm = bodies_.rotation(load.node) * load.arm;
+  const Vector6& velocity = bodies_.velocity(load.node);
+  const Vector3 place = origin + bodies_.position(load.node) + arm,
+                moving = velocity.head<3>() + velocity.tail<3>().cross(arm),
+                force = load.pull.stiffness * (load.pull.target - place) - load.pull.damping * moving;
+  Vector6 wrench;
+  wrench << force, arm.cross(force);
+  add_wrench(load.node, wrench, change);
+}
+
+void ExplicitStep::add_wrench(int node, const Vector6& wrench, std::vector<double>& change) {
+  bodies_.add_force(node, wrench);
+  change[work_] += wrench.dot(bodies_.velocity(node));
 }
 
 // ---------------------------------------------------------------- the step
 
-bool ExplicitStep::advance(State& state, double step, bool reuses) {
+/// Begins a step of dependent coordinates at the numbers `begin_`. Adds the work by which motions jump to `work`.
+bool ExplicitStep::begin_dependent(const State& state, double step, double& work) {
+  double* rates = begin_.data() + rates_;
+  unpack(begin_);
+  if (!dependent_.begin(state.time, step, released_, rates, bodies_)) return false;
+  before_ = begin_;
+  if (!place(0, begin_)) return false;
+  work += dependent_.strike(before_.data() + rates_, armatures_.data(), bodies_, rates);
+  return true;
+}
+
+StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses) {
+  using Reason = StepResult::Reason;
   const bool goes_on = reuses && is_as_left(state);
+  const auto fail = [&](Reason reason) {
+    last_nodes_.clear();  // what was known at the end of the last step is lost
+    return reason;
+  };
   if (goes_on)
     begin_ = stage_;
   else
     pack(state);
   begin_[work_] = begin_[work_ + 1] = 0;
+  find_values(state.time, step, 0);
+  if (dependent_.any() && !begin_dependent(state, step, begin_[work_])) return fail(Reason::DeadPoint);
   const std::size_t stages = changes_.size();
   if (goes_on && acts_as_before(state))
     changes_[0] = last_change_;
-  else
-    evaluate(state, state.time, begin_, changes_[0]);
+  else if (!evaluate(state, 0, begin_, changes_[0]))
+    return fail(Reason::DeadPoint);
   for (std::size_t s = 1; s <= stages; ++s) {
     const std::vector<double>& weights = s < stages ? tableau_.stages[s] : tableau_.weights;
     stage_ = begin_;
@@ -231,19 +326,19 @@ bool ExplicitStep::advance(State& state, double step, bool reuses) {
       const double weight = step * weights[r];
       for (std::size_t i = 0; i < stage_.size(); ++i) stage_[i] += weight * changes_[r][i];
     }
-    if (s < stages) evaluate(state, state.time + tableau_.times[s] * step, stage_, changes_[s]);
+    find_values(state.time, step, s < stages ? tableau_.times[s] : 1);
+    if (s < stages && !evaluate(state, s, stage_, changes_[s])) return fail(Reason::DeadPoint);
   }
-  if (!std::all_of(stage_.begin(), stage_.end(), [](double number) { return std::isfinite(number); })) {
-    last_nodes_.clear();  // what was known at the end of the last step is lost
-    return false;
-  }
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (!std::all_of(stage_.begin(), stage_.end(), is_finite)) return fail(Reason::NotFinite);
   normalise(stage_);
   const double work = stage_[work_], dissipated = stage_[work_ + 1];
-  evaluate(state, state.time + step, stage_, last_change_);
+  if (!evaluate(state, stages, stage_, last_change_)) return fail(Reason::DeadPoint);
+  if (dependent_.any() && dependent_.largest_opening(bodies_) > kOpenLoop) return fail(Reason::OpenLoop);
   state.work += work;
   state.dissipated += dissipated;
   write(state, state.time + step);
-  return true;
+  return Reason::None;
 }
 
 void ExplicitStep::write(State& state, double time) {
@@ -270,6 +365,7 @@ void ExplicitStep::write(State& state, double time) {
   state.time = last_time_ = time;
   std::copy(state.commands.begin(), state.commands.end(), last_commands_.begin());
   last_nodes_ = state.nodes;
+  last_values_ = values_;
 }
 
 }  // namespace flexarm

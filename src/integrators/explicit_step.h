@@ -1,14 +1,22 @@
 #pragma once
-/// Steps of explicit Runge-Kutta methods, for trees of rigid links. (docs/notes/explicit.md)
+/// Steps of explicit Runge-Kutta methods, for rigid links. (docs/notes/explicit.md)
 
 #include <vector>
 
+#include "flexarm/model/results.h"
+#include "integrators/dependent_rates.h"
 #include "joints/articulated_bodies.h"
 #include "joints/joint_stop.h"
 #include "model/state.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
+
+/// Limit for the violation of a loop's implied constraints: far above the errors of Newton and of rounded input.
+constexpr double kOpenLoop = 1e-4;
+
+/// Returns what explicit schemes cannot simulate in a model, in words; null: nothing.
+const char* explicit_obstacle(const Model& model);
 
 /// Integrates the released coordinates, their rates, and the work and the dissipation that the state adds up. Allocates
 /// no memory after construction.
@@ -18,10 +26,10 @@ class ExplicitStep {
   /// @throws ModelError naming what explicit schemes cannot simulate, if the model has some of it
   ExplicitStep(const Model& model, const Scheme& scheme);
 
-  /// Advances the state by a step [s]. Returns false, and leaves the state as it was, if numbers are no longer finite.
-  /// `reuses`: a step may begin with what the last one knew at its end. If not, a run that continues from a restored
-  /// state is the same bit for bit.
-  bool advance(State& state, double step, bool reuses);
+  /// Advances the state by a step [s]. Returns why it cannot, and leaves the state as it was then: numbers are no
+  /// longer finite, or a loop is at a dead point or opens. `reuses`: a step may begin with what the last one knew at
+  /// its end. If not, a run that continues from a restored state is the same bit for bit.
+  StepResult::Reason advance(State& state, double step, bool reuses);
 
  private:
   struct Joint {
@@ -30,11 +38,21 @@ class ExplicitStep {
   };
   void pack(const State& state);
   void unpack(const std::vector<double>& numbers);
-  void evaluate(const State& state, double time, const std::vector<double>& numbers, std::vector<double>& change);
-  void find_efforts(const State& state, double time, const double* rates, std::vector<double>& change);
-  void add_loads(const State& state, double time, std::vector<double>& change);
+  void find_values(double begin, double step, double part);
+  /// Computes derivatives at a stage, or at the end, which follows the last stage. Sets dependent coordinates among the
+  /// numbers. Returns false if a loop cannot be closed.
+  bool evaluate(const State& state, std::size_t stage, std::vector<double>& numbers, std::vector<double>& change);
+  bool place(std::size_t stage, std::vector<double>& numbers);
+  bool begin_dependent(const State& state, double step, double& work);
+  void find_efforts(const State& state, const double* rates, std::vector<double>& change);
+  void add_drives(const double* rates, std::vector<double>& change);
+  void add_loads(const State& state, std::vector<double>& change);
   void add_load(const NodalLoad& load, double scale, std::vector<double>& change);
+  /// `origin`: of the state's positions, in the world.
+  void add_pull(const NodalLoad& load, const Vector3& origin, std::vector<double>& change);
+  void add_wrench(int node, const Vector6& wrench, std::vector<double>& change);
   void normalise(std::vector<double>& numbers) const;
+  void write_positions(std::vector<double>& numbers) const;
   bool is_as_left(const State& state) const;
   bool acts_as_before(const State& state) const;
   void write(State& state, double time);
@@ -42,6 +60,7 @@ class ExplicitStep {
   const Model& model_;
   const ExplicitTableau& tableau_;
   ArticulatedBodies bodies_;
+  DependentRates dependent_;
   std::vector<Joint> joints_;
   std::vector<StopPenalty> penalties_;  // per coordinate
   std::vector<NodePose> poses_;
@@ -49,10 +68,12 @@ class ExplicitStep {
   std::vector<Released> released_;
   std::vector<double> efforts_, applied_, armatures_;  // per rate; `applied_`: per coordinate, without passive ones
   /// Positions of all joints, their rates, work, dissipation: at the beginning, and at a stage or the end.
-  std::vector<double> begin_, stage_;
+  std::vector<double> begin_, stage_, before_;
   std::vector<std::vector<double>> changes_;  // per stage
   std::vector<double> last_change_, last_commands_;
-  std::size_t rates_ = 0, work_ = 0;  // where the rates, and work and dissipation, begin
+  std::size_t rates_ = 0, work_ = 0;          // where the rates, and work and dissipation, begin
+  std::vector<int> varying_;                  // functions of time that are not constant
+  std::vector<double> values_, last_values_;  // of all functions of time: now, and at the end of the last step
   double last_time_ = 0;
   std::vector<NodeState> last_nodes_;  // as they were left; empty: there was no step
 };

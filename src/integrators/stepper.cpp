@@ -17,8 +17,6 @@ namespace {
 
 /// A node must not turn by more than pi/2 in a step: |2 tan(angle/2)| = 2.
 constexpr double kLargestStepRotation = 2.0;
-/// Limit for the violation of a loop's implied constraints: far above the errors of Newton and of rounded input.
-constexpr double kOpenLoop = 1e-4;
 /// Suzuki's composition of order four: lengths of the sub-steps relative to the step; the middle one is backwards.
 const double kOuterPart = 1 / (4 - std::cbrt(4.0));
 const double kComposition[kCompositionSteps] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
@@ -77,8 +75,8 @@ void Stepper::observe(StepObserver* observer) {
 
 bool Stepper::explicit_step(State& state, double step, StepResult& result) {
   ++result.iterations;
-  if (explicit_->advance(state, step, settings_.reuse_factorisation)) return true;
-  result.reason = StepResult::Reason::NotFinite;
+  result.reason = explicit_->advance(state, step, settings_.reuse_factorisation);
+  if (result.reason == StepResult::Reason::None) return true;
   result.failure.time = state.time;
   result.failure.step = step;
   return false;
@@ -169,7 +167,10 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   if (!do_sub_steps(state, deadline, result)) return result;
   const double done = settings_.step - rest_;
   state.time = begin_ + done;
-  state.drives.end(done);
+  if (explicit_)
+    state.drives.restart(state.efforts);  // they are known at the end
+  else
+    state.drives.end(done);
   state.transmitted.end(done);
   if (follower_) follower_->end_step(done);
   if (rest_ == 0) ++state.steps;
@@ -194,7 +195,7 @@ bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& r
     if (!is_done && result.reason == StepResult::Reason::EventWithin) return false;
     if (!is_done) {
       state.good_steps = 0;
-      const bool may_halve = level < (system_.may_hit() ? finest : settings_.max_halvings);
+      const bool may_halve = level < (!explicit_ && system_.may_hit() ? finest : settings_.max_halvings);
       if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false);
       ++state.halving_level;
       ++result.halvings;

@@ -47,7 +47,8 @@ Eigen::Matrix<double, Count, Count> inverse(const Eigen::Matrix<double, Count, C
 
 }  // namespace
 
-ArticulatedBodies::ArticulatedBodies(const Model& model) : bodies_(model.nodes.size()), gravity_(model.gravity) {
+ArticulatedBodies::ArticulatedBodies(const Model& model)
+    : bodies_(model.nodes.size()), carriers_(bodies_.size(), -1), forces_(bodies_.size()), gravity_(model.gravity) {
   world_.rotation.setIdentity();
   world_.position.setZero(), world_.velocity.setZero();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -59,6 +60,7 @@ ArticulatedBodies::ArticulatedBodies(const Model& model) : bodies_(model.nodes.s
     Link& link = links_.emplace_back();
     link.kind = joint.kind;
     link.master = joint.master, link.slave = joint.slave;
+    carriers_[link.slave] = static_cast<int>(links_.size()) - 1;
     link.first = rate_count_, link.count = released_count(joint.kind);
     rate_count_ += link.count;
     link.origin = joint.origin.position, link.frame = joint.origin.orientation.toRotationMatrix();
@@ -182,28 +184,36 @@ void ArticulatedBodies::pass_on(Link& link, const double* efforts, const double*
   if (link.master < 0) return;
   bias += inertia * link.drift;
   Body& master = bodies_[link.master];
-  const Matrix3 linear = inertia.topLeftCorner<3, 3>(), mixed = inertia.topRightCorner<3, 3>();
-  const Matrix3 moved = mixed - times_hat(linear, link.way);
-  master.inertia.topLeftCorner<3, 3>() += linear;
-  master.inertia.topRightCorner<3, 3>() += moved;
-  master.inertia.bottomLeftCorner<3, 3>() += moved.transpose();
-  // hat(way) moved = -(moved^T hat(way))^T
-  master.inertia.bottomRightCorner<3, 3>() += inertia.bottomRightCorner<3, 3>() -
-                                              times_hat(moved.transpose(), link.way).transpose() -
-                                              times_hat(mixed.transpose(), link.way);
+  add_moved(inertia, link.way, master.inertia);
   master.bias.head<3>() += bias.head<3>();
   master.bias.tail<3>() += bias.tail<3>() + link.way.cross(Vector3(bias.head<3>()));
+}
+
+/// Adds to an inertia about one node that of a body about another node, which is `way` from there.
+void ArticulatedBodies::add_moved(const Matrix6& inertia, const Vector3& way, Matrix6& to) {
+  const Matrix3 linear = inertia.topLeftCorner<3, 3>(), mixed = inertia.topRightCorner<3, 3>();
+  const Matrix3 moved = mixed - times_hat(linear, way);
+  to.topLeftCorner<3, 3>() += linear;
+  to.topRightCorner<3, 3>() += moved;
+  to.bottomLeftCorner<3, 3>() += moved.transpose();
+  // hat(way) moved = -(moved^T hat(way))^T
+  to.bottomRightCorner<3, 3>() += inertia.bottomRightCorner<3, 3>() - times_hat(moved.transpose(), way).transpose() -
+                                  times_hat(mixed.transpose(), way);
+}
+
+Vector6 ArticulatedBodies::carried_acceleration(const Link& link) const {
+  Vector6 change = link.drift;
+  if (link.master < 0) return change;
+  const Vector6& of_master = bodies_[link.master].acceleration;
+  change.head<3>() += of_master.head<3>() - link.way.cross(of_master.tail<3>());
+  change.tail<3>() += of_master.tail<3>();
+  return change;
 }
 
 /// Finds the accelerations of a joint and its slave from that of the master.
 void ArticulatedBodies::follow(const Link& link, double* rates_change) {
   Vector6& change = bodies_[link.slave].acceleration;
-  change = link.drift;
-  if (link.master >= 0) {
-    const Vector6& of_master = bodies_[link.master].acceleration;
-    change.head<3>() += of_master.head<3>() - link.way.cross(of_master.tail<3>());
-    change.tail<3>() += of_master.tail<3>();
-  }
+  change = carried_acceleration(link);
   with_count(link.count, [&](auto constant) {
     constexpr int kCount = constant;
     const Eigen::Matrix<double, kCount, 1> rates =
@@ -211,6 +221,55 @@ void ArticulatedBodies::follow(const Link& link, double* rates_change) {
     Eigen::Map<Eigen::Matrix<double, kCount, 1>>(rates_change + link.first) = rates;
     change += link.columns.template leftCols<kCount>() * rates;
   });
+}
+
+// ---------------------------------------------------------------- rates that depend on each other
+
+void ArticulatedBodies::set_accelerations(const double* rates_change) {
+  for (const Link& link : links_) {
+    Vector6& change = bodies_[link.slave].acceleration;
+    change = carried_acceleration(link);
+    for (int k = 0; k < link.count; ++k) change += rates_change[link.first + k] * link.columns.col(k);
+  }
+}
+
+void ArticulatedBodies::find_needed_efforts(const double* rates_change, const double* armatures, double* efforts) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    forces_[i] = bodies_[i].inertia * bodies_[i].acceleration + bodies_[i].bias;
+  for (std::size_t j = links_.size(); j-- > 0;) {
+    const Link& link = links_[j];
+    const Vector6& force = forces_[link.slave];
+    for (int k = link.first; k < link.first + link.count; ++k)
+      efforts[k] = link.columns.col(k - link.first).dot(force) + armatures[k] * rates_change[k];
+    if (link.master < 0) continue;
+    forces_[link.master].head<3>() += force.head<3>();
+    forces_[link.master].tail<3>() += force.tail<3>() + link.way.cross(Vector3(force.head<3>()));
+  }
+}
+
+void ArticulatedBodies::add_power(int node, Vector6 force, double* row) const {
+  while (node >= 0) {
+    const Link& link = links_[carriers_[node]];
+    for (int k = 0; k < link.count; ++k) row[link.first + k] += link.columns.col(k).dot(force);
+    force.tail<3>() += link.way.cross(Vector3(force.head<3>()));
+    node = link.master;
+  }
+}
+
+void ArticulatedBodies::find_mass_matrix(const double* armatures, Eigen::MatrixXd& mass) {
+  mass.setZero();
+  for (std::size_t j = links_.size(); j-- > 0;) {
+    const Link& link = links_[j];
+    const Matrix6& inertia = bodies_[link.slave].inertia;  // of all that the joint carries
+    for (int k = 0; k < link.count; ++k) {
+      const int column = link.first + k;
+      // Joints in the branch of this one, up to the root. Their rows are zero so far.
+      add_power(link.slave, inertia * link.columns.col(k), mass.col(column).data());
+      mass(column, column) += armatures[column];
+      for (int row = 0; row < link.first; ++row) mass(column, row) = mass(row, column);
+    }
+    if (link.master >= 0) add_moved(inertia, link.way, bodies_[link.master].inertia);
+  }
 }
 
 }  // namespace flexarm

@@ -31,6 +31,16 @@ class ArticulatedBodies {
   void accelerate(const double* efforts, const double* armatures, double* rates_change);
   const Vector6& acceleration(int node) const { return bodies_[node].acceleration; }  ///< d{v, w}/dt
 
+  // For rates that depend on each other, instead of accelerate():
+  /// Sets the accelerations of all nodes to those with these derivatives of the rates.
+  void set_accelerations(const double* rates_change);
+  /// Computes the efforts that these accelerations need. To be called before find_mass_matrix().
+  void find_needed_efforts(const double* rates_change, const double* armatures, double* efforts);
+  /// Computes the mass matrix of the rates, by composite bodies (Featherstone 2008, ch. 6). set() is needed after it.
+  void find_mass_matrix(const double* armatures, Eigen::MatrixXd& mass);
+  /// Adds the power of a force {f, m} on a node per unit of each rate to `row`; world axes. `node`: -1 is the world.
+  void add_power(int node, Vector6 force, double* row) const;
+
  private:
   struct Body {
     double mass = 0;
@@ -69,10 +79,15 @@ class ArticulatedBodies {
   static void move_frame(Link& link, const Released& released, const double* rates, const Matrix3& master, Motion& out);
   void pass_on(Link& link, const double* efforts, const double* armatures);
   void follow(const Link& link, double* rates_change);
+  /// The acceleration of a joint's slave if the rates do not change.
+  Vector6 carried_acceleration(const Link& link) const;
+  static void add_moved(const Matrix6& inertia, const Vector3& way, Matrix6& to);
 
   Body world_;
-  std::vector<Body> bodies_;  // per node
-  std::vector<Link> links_;   // per joint, from the root to the leaves
+  std::vector<Body> bodies_;     // per node
+  std::vector<Link> links_;      // per joint, from the root to the leaves
+  std::vector<int> carriers_;    // per node: the joint whose slave it is
+  std::vector<Vector6> forces_;  // per node, scratch memory
   Vector3 gravity_;
   int rate_count_ = 0;
 };

@@ -45,7 +45,7 @@ struct Scheme : TimeRule {
 
 /// All implicit schemes with their default options; the default scheme is the first.
 const std::vector<Scheme>& schemes();
-/// Explicit schemes, which simulate trees of rigid links only.
+/// Explicit schemes, which simulate rigid links only.
 const std::vector<Scheme>& explicit_schemes();
 /// The scheme with that name and default options; "auto" is the default scheme. Empty if the name is unknown.
 std::optional<Scheme> find_scheme(std::string_view name);

@@ -152,10 +152,9 @@ const std::vector<Scheme>& explicit_schemes() {
   static const std::vector<Scheme> table = [] {
     std::vector<Scheme> out(2);
     out[0].name = "rk4", out[0].order = 4, out[0].tableau = &rk4_tableau();
-    out[0].description = "explicit Runge-Kutta method of order 4, for trees of rigid links";
+    out[0].description = "explicit Runge-Kutta method of order 4, for rigid links";
     out[1].name = "dop853", out[1].order = 8, out[1].tableau = &dop853_tableau();
-    out[1].description =
-        "explicit Runge-Kutta method of order 8 (Hairer, Norsett and Wanner 1993), for trees of rigid links";
+    out[1].description = "explicit Runge-Kutta method of order 8 (Hairer, Norsett and Wanner 1993), for rigid links";
     return out;
   }();
   return table;

@@ -51,7 +51,6 @@ void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrench
   if (std::none_of(wrenches.begin(), wrenches.end(), pulls)) return;
   if (scheme.hht != HhtForm::None)
     throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
-  if (scheme.tableau) throw std::invalid_argument("explicit schemes (rk4, dop853) have no pulls");
 }
 
 // ---------------------------------------------------------------- for displays

@@ -153,5 +153,46 @@ TEST(ArticulatedBodies, AreInBalance) {
   }
 }
 
+// Inverse dynamics needs the efforts that forward dynamics was given. The mass matrix has the differences of efforts
+// for unit changes of rates. Round-off of numbers of the order of 10.
+TEST(ArticulatedBodies, NeedTheEffortsThatAccelerateThem) {
+  const Model model = tree();
+  RandomSource random(9);
+  ArticulatedBodies bodies(model);
+  const int count = bodies.rate_count();
+  const std::vector<Released> released = somewhere(model, random);
+  const Eigen::VectorXd rates = numbers(count, random), efforts = numbers(count, random),
+                        armatures = numbers(count, random).cwiseAbs();
+  const Vector6 force = random.vector6();
+  Eigen::VectorXd changes(count), needed(count), more(count);
+  const auto set = [&] {
+    bodies.set(released, rates.data());
+    bodies.add_force(3, force);
+  };
+  set();
+  bodies.accelerate(efforts.data(), armatures.data(), changes.data());
+  const Vector6 acceleration = bodies.acceleration(6);
+  set();
+  bodies.set_accelerations(changes.data());
+  EXPECT_LT((bodies.acceleration(6) - acceleration).norm(), 1e-12);
+  bodies.find_needed_efforts(changes.data(), armatures.data(), needed.data());
+  EXPECT_LT((needed - efforts).norm(), 1e-12);
+  Eigen::MatrixXd mass(count, count);
+  bodies.find_mass_matrix(armatures.data(), mass);
+  for (int k = 0; k < count; ++k) {
+    const Eigen::VectorXd other = changes + Eigen::VectorXd::Unit(count, k);
+    set();
+    bodies.set_accelerations(other.data());
+    bodies.find_needed_efforts(other.data(), armatures.data(), more.data());
+    EXPECT_LT((more - needed - mass.col(k)).norm(), 1e-11) << k;
+  }
+  // A row of powers is the velocity that each rate gives the node.
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
+  set();
+  bodies.add_power(3, force, row.data());
+  bodies.add_power(-1, force, row.data());
+  EXPECT_NEAR(row.dot(rates), force.dot(bodies.velocity(3)), 1e-12);
+}
+
 }  // namespace
 }  // namespace flexarm::test

@@ -10,6 +10,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
@@ -62,6 +63,167 @@ TEST_P(ExplicitSchemes, SwingAPendulum) {
   const double coarse = error(steps), fine = error(2 * steps);
   EXPECT_GT(fine, 1e-13);
   EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+constexpr double kGravity = 9.81;
+
+/// The error of angle and rate of a joint after `half` of a period [s], when it has swung from 0 by `angle`, and
+/// is at rest. `rate`: a scale of rates.
+double error_after_swing(const std::string& text, const char* joint, const char* scheme, double half, int steps,
+                         double angle, double rate) {
+  Simulation s = simulation_of(text, scheme, half / steps);
+  const Energies start = s.energies();
+  for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+  const Energies end = s.energies();
+  EXPECT_NEAR(end.total() - end.work, start.total(), 1e-3 * (1 + std::abs(end.work))) << "a rough check of the account";
+  const std::size_t swung = *s.find_coordinate(joint);
+  return std::hypot(s.position(swung) - angle, s.velocity(swung) / rate);
+}
+
+// A pendulum on a cart that a motion accelerates by 3 m/s^2. Gravity is inclined so that the pendulum feels 9.81 m/s^2
+// along -z, and swings as on a cart at rest.
+TEST_P(ExplicitSchemes, SwingOnACartThatAMotionDrives) {
+  constexpr double kFirstKind = 1.8540746773013719184;  // K(m = 1/2)
+  const double rate = std::sqrt(2 * kGravity * 0.5 / (0.03 + 2 * 0.25)), half = 2 * kFirstKind / rate;
+  const std::string text = "<robot name=\"cart\"><link name=\"world\"/>" + link("cart", "0 0 0") +
+                           link("bob", "0.5 0 0") + R"(<joint name="hinge" type="continuous"><parent link="cart"/>
+      <child link="bob"/><axis xyz="0 1 0"/></joint> <joint name="rail" type="prismatic"><parent link="world"/>
+      <child link="cart"/><axis xyz="1 0 0"/><limit lower="-9" upper="99" effort="0" velocity="9"/></joint>
+      <simulation><gravity xyz="3 0 -9.81"/> <motion joint="rail" position="1.5*t*t"/></simulation></robot>)";
+  const auto error = [&](int steps) {
+    return error_after_swing(text, "hinge", GetParam().name, half, steps, kPi, rate);
+  };
+  const int steps = static_cast<int>(std::lround(half / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-13);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// The effort of a motion is that of the equation of motion, and its work the change of energy.
+TEST_P(ExplicitSchemes, FindTheEffortOfAMotion) {
+  const std::string text = "<robot name=\"wheel\"><link name=\"world\"/>" + link("wheel", "0 0 0") + R"xml(
+      <joint name="hinge" type="continuous"><parent link="world"/><child link="wheel"/><axis xyz="0 1 0"/>
+      <dynamics damping="0.5"/></joint>
+      <simulation><motion joint="hinge" position="sin(4*t)"/></simulation></robot>)xml";
+  constexpr double kStep = 0.02;
+  Simulation s = simulation_of(text, GetParam().name, kStep);
+  const Energies start = s.energies();
+  for (int n = 0; n < 20; ++n) {
+    ASSERT_TRUE(s.step().converged);
+    const double t = s.time();
+    // Errors of the polynomial through ten samples in a step: (4 h)^8 / 8! and less; round-off 1e-16 * 100 / h^2
+    EXPECT_NEAR(s.velocity(0), 4 * std::cos(4 * t), 1e-10);
+    EXPECT_NEAR(s.effort(0), -0.03 * 16 * std::sin(4 * t) + 0.5 * 4 * std::cos(4 * t), 1e-9);
+  }
+  const Energies end = s.energies();
+  const double tolerance = GetParam().order == 4 ? std::pow(4 * kStep, 4) : 1e-9;
+  EXPECT_NEAR(end.total() - end.work + end.dissipated, start.total(), tolerance);
+}
+
+// A motion whose rate jumps strikes what it carries: the wheel of a trolley that suddenly stops keeps its momentum.
+TEST_P(ExplicitSchemes, TakeTheImpulsesOfMotions) {
+  const std::string text = "<robot name=\"trolley\"><link name=\"world\"/>" + link("trolley", "0 0 0") +
+                           link("bob", "0 0 -0.5") + R"(<joint name="rail" type="prismatic"><parent link="world"/>
+      <child link="trolley"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="9"/></joint>
+      <joint name="hinge" type="continuous"><parent link="trolley"/><child link="bob"/><axis xyz="0 1 0"/></joint>
+      <simulation><gravity xyz="0 0 0"/> <motion joint="rail" position="t &lt; 0.5 ? t : 0.5"/></simulation></robot>)";
+  Simulation s = simulation_of(text, GetParam().name, 0.1);
+  const std::size_t hinge = *s.find_coordinate("hinge");
+  while (s.time() < 1 - 1e-9) ASSERT_TRUE(s.step().converged);
+  // m v a = (J + m a^2) w; the hinge turns about y, from x to -z.
+  EXPECT_NEAR(s.velocity(hinge), -2 * 0.5 * 1 / (0.03 + 2 * 0.25), 1e-9);
+  EXPECT_NEAR(s.energies().total() - s.energies().work, 0.5 * (2 + 2) * 1, 1e-9);
+}
+
+// A spring that a program applies pulls a block on a rail: a harmonic oscillator. Its work is the change of energy.
+TEST_P(ExplicitSchemes, ArePulled) {
+  const double rate = std::sqrt(50.0 / 2), half = kPi / rate;
+  const std::string text = "<robot name=\"block\"><link name=\"world\"/>" + link("block", "0 0 0") + R"(
+      <joint name="rail" type="prismatic"><parent link="world"/><child link="block"/><axis xyz="1 0 0"/>
+      <limit lower="-9" upper="9" effort="0" velocity="9"/></joint><simulation/></robot>)";
+  const auto error = [&](int steps) {
+    Simulation s = simulation_of(text, GetParam().name, half / steps);
+    AppliedWrench spring;
+    spring.link = 1;
+    spring.at = {0.1, 0, 0};
+    spring.pull.target = {0.5, 0, 0};
+    spring.pull.stiffness = 50;
+    s.apply_wrenches({spring});
+    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    EXPECT_NEAR(s.energies().total() - s.energies().work, 0, 1e-3);
+    return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
+  };
+  const int steps = static_cast<int>(std::lround(half * rate / 3.5 / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-14);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// A joint with a spring and another one that follows it: a harmonic oscillator.
+TEST_P(ExplicitSchemes, FollowOtherJoints) {
+  const double inertia = 0.03 + 1.5 * 1.5 * 0.04, rate = std::sqrt(7 / inertia), half = kPi / rate;
+  const std::string text = "<robot name=\"gears\"><link name=\"world\"/>" + link("first", "0 0 0") +
+                           link("second", "0 0 0") + R"(<joint name="a" type="continuous"><parent link="world"/>
+      <child link="first"/><axis xyz="0 1 0"/></joint> <joint name="b" type="continuous"><parent link="world"/>
+      <child link="second"/><axis xyz="0 0 1"/><mimic joint="a" multiplier="-1.5" offset="0.2"/></joint>
+      <spring joint="a" stiffness="7" rest="0.4"/> <simulation/></robot>)";
+  const auto error = [&](int steps) {
+    Simulation s = simulation_of(text, GetParam().name, half / steps);
+    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    EXPECT_NEAR(s.position(1), 0.2 - 1.5 * s.position(0), 1e-14);
+    EXPECT_NEAR(s.velocity(1), -1.5 * s.velocity(0), 1e-13);
+    return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
+  };
+  const int steps = static_cast<int>(std::lround(half * rate / 3.5 / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-14);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// A parallelogram linkage swings as a pendulum: its coupler is not turned. It is let go at 60 degrees.
+TEST_P(ExplicitSchemes, SwingAParallelogram) {
+  constexpr double kFirstKind = 1.6857503548125960429;  // K(m = sin^2(30 degrees))
+  const double rate = std::sqrt((2 * 0.5 * 2 + 2 * 1) * kGravity / (2 * (0.03 + 2 * 0.25) + 2)),
+               half = 2 * kFirstKind / rate;
+  const std::string centre = "0.43301270189221932 0 -0.25", end = "0.86602540378443865 0 -0.5";
+  const std::string text = "<robot name=\"parallelogram\"><link name=\"world\"/>" + link("crank", centre) +
+                           link("coupler", "0.4 0 0.1") + link("rocker", centre) +
+                           R"(<joint name="crank" type="continuous"><parent link="world"/><child link="crank"/>
+      <axis xyz="0 1 0"/></joint> <joint name="knee" type="continuous"><parent link="crank"/><child link="coupler"/>
+      <origin xyz=")" + end +
+                           R"("/><axis xyz="0 1 0"/></joint>
+      <joint name="foot" type="continuous"><parent link="world"/><child link="rocker"/><origin xyz="0.8 0 0"/>
+      <axis xyz="0 1 0"/></joint> <loop_joint name="hip" type="continuous"><parent link="rocker"/>
+      <child link="coupler"/><origin xyz=")" +
+                           end + R"("/><child_origin xyz="0.8 0 0"/><axis xyz="0 1 0"/></loop_joint>
+      <simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)";
+  const auto error = [&](int steps) {
+    return error_after_swing(text, "crank", GetParam().name, half, steps, 2 * kPi / 3, rate);
+  };
+  const int steps = static_cast<int>(std::lround(1.6 * half / GetParam().coarse));
+  const double coarse = error(steps), fine = error(2 * steps);
+  EXPECT_GT(fine, 1e-14);
+  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+}
+
+// The four-bar linkage of the speed report, driven: positions and efforts are those of em4 with short steps.
+TEST_P(ExplicitSchemes, DriveAFourBar) {
+  const scene::ReadResult read = scene::read_scene_file(source_path("config/speed/rigid_four_bar.urdf"));
+  ASSERT_TRUE(read.scene);
+  const auto end = [&](const std::string& scheme, double step) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    options.step = step;
+    Simulation s(*read.scene, options);
+    const double start = s.energies().total();
+    while (s.time() < 1 - 1e-9) EXPECT_TRUE(s.step().converged);
+    EXPECT_NEAR(s.energies().total() - s.energies().work, start, 1e-6);
+    return s;
+  };
+  Simulation s = end(GetParam().name, GetParam().order == 4 ? 2e-3 : 1e-2), reference = end("em4", 1e-3);
+  EXPECT_LT((s.probe_pose(0).position - reference.probe_pose(0).position).norm(), 1e-8);
+  EXPECT_LT((s.probe(0).velocity - reference.probe(0).velocity).norm(), 1e-4);
+  EXPECT_NEAR(s.effort(0), reference.effort(0), 1e-2 * std::abs(s.effort(0)));
 }
 
 // Velocities and accelerations of output are those of the equations at the end of the step, whatever its length.
@@ -163,7 +325,8 @@ TEST_P(ExplicitSchemes, GoOnFromARestoredStateBitByBit) {
 // What a step had computed when it failed is not used by later ones.
 TEST_P(ExplicitSchemes, GoOnAfterAFailure) {
   const std::string text = "<robot name=\"arm\"><link name=\"world\"/>" + link("arm", "0.3 0 0") + R"xml(
-    <joint name="hinge" type="continuous"><parent link="world"/><child link="arm"/> <axis xyz="0 1 0"/></joint>
+    <joint name="hinge" type="revolute"><parent link="world"/><child link="arm"/> <axis xyz="0 1 0"/>
+      <limit lower="-3" upper="3" effort="100" velocity="9"/></joint>
     <simulation><load link="arm" at="1 0 0" force="0 0 1" history="t &lt; 0.55 ? 1 : sqrt(-1)"/></simulation></robot>)xml";
   Simulation s = simulation_of(text, GetParam().name, 0.1);
   for (int n = 0; n < 5; ++n) ASSERT_TRUE(s.step().converged);
@@ -192,10 +355,10 @@ TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
   const auto expect_no = [&](const std::string& what, const std::string& text) {
     EXPECT_NE(text.find(refused + what), std::string::npos) << text;
   };
-  expect_no("prescribed motions", refusal(hinge + end, R"(<motion joint="hinge" position="t"/>)"));
   expect_no("servos", refusal(hinge + end + R"(<servo joint="hinge" mode="position" kp="4" kd="1" set_point="1"/>)"));
   expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
-  expect_no("springs, lines or contacts", refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
+  expect_no("springs, lines, drag or contacts",
+            refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
       from="world" from_at="1 1 0" to="arm" to_at="0 0 1"/>)"));
   expect_no("flexible links", refusal(hinge + end + R"(<joint name="glue" type="fixed"><parent link="arm"/>
       <child link="rod"/></joint><link name="rod"><beam elements="1"><centerline><line to="1 0 0"/></centerline>

@@ -224,13 +224,20 @@ TEST_F(Allocation, NoneInDrivesAndServos) {
 }
 
 TEST_F(Allocation, NoneInExplicitSteps) {
-  for (const char* scheme : {"rk4", "dop853"}) {
+  for (const auto& [scheme, depends] : {std::pair("rk4", false), {"dop853", false}, {"rk4", true}, {"dop853", true}}) {
     SceneBuilder b;
     const Matrix3 inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();
     b.body("upper", 1, {0.5, 0, 0}, inertia);
     b.body("fore", 0.7, {0, 0.4, 0}, inertia);
     b.joint("shoulder", scene::JointKind::Continuous, "world", "upper");
     b.joint("ball", scene::JointKind::Spherical, "upper", "fore", {1, 0, 0});
+    if (depends) {
+      b.body("wheel", 0.3, Vector3::Zero(), inertia);
+      b.body("follower", 0.3, Vector3::Zero(), inertia);
+      b.joint("axle", scene::JointKind::Continuous, "fore", "wheel");
+      b.joint("gear", scene::JointKind::Continuous, "upper", "follower").mimic = scene::Mimic{"shoulder", 2, 0};
+      b.scene.motions.push_back({"axle", TimeFunction::parse("sin(3*t)"), {}});
+    }
     b.scene.gravity = {0, -9.81, 0};
     SimulationOptions options;
     options.scheme = scheme;
@@ -242,7 +249,7 @@ TEST_F(Allocation, NoneInExplicitSteps) {
 }
 
 TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
-  for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3"}) {
+  for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3", "rk4", "dop853"}) {
     SimulationOptions options;
     options.scheme = scheme;
     options.step = 0.002;

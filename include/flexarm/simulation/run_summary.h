@@ -23,6 +23,8 @@ class RunSummary {
   void look(const Simulation& simulation);
 
   const StepCounts& counts() const { return counts_; }
+  /// Largest error of the energy balance, relative to the largest energy of the motion so far.
+  double energy_drift() const { return energy_scale_ > 0 ? energy_.amount / energy_scale_ : 0; }
   /// Warnings, one line each: which value was out of bounds, by how much, where and when, the consequence and a remedy.
   /// Empty if everything was within its bounds.
   std::vector<std::string> warnings(const Simulation& simulation) const;

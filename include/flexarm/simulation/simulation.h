@@ -154,8 +154,8 @@ class Simulation {
   /// part of the state: snapshots and checkpoints contain them, reset() removes them. On a flexible link a wrench acts
   /// on the section of the nearest node.
   /// @throws std::invalid_argument if a wrench is not finite, a stiffness or damping is negative, the link is fixed to
-  /// the world, or a wrench has a pull and the scheme interpolates forces in time (hht1, hht2, hht3) or is explicit.
-  /// Nothing has changed then.
+  /// the world, or a wrench has a pull and the scheme interpolates forces in time (hht1, hht2, hht3). Nothing has
+  /// changed then.
   void apply_wrenches(const std::vector<AppliedWrench>& wrenches);
 
   // ---- links, in the scene's order
