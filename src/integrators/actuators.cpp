@@ -176,9 +176,8 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
     const TimeFunction* history = servo.set_point >= 0 && std::isnan(state.servo.set_point)
                                       ? &configuration_.model().histories[servo.set_point]
                                       : nullptr;
-    const double time = part.input.time, period = servo.sample_time;
-    const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period
-                                    : rate_of_command(state.servo, time - 0.5 * period);
+    const double time = part.input.time;
+    const double set_rate = set_rate_of_sample(servo, state.servo, history, time, kRoundOff * configuration_.step());
     part.servo = state.servo;
     // A sampled servo takes the value at the beginning of the step.
     if (servo.feedforward >= 0) part.input.feedforward = configuration_.model().histories[servo.feedforward](time);

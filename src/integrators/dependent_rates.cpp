@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/pi.h"
-
 namespace flexarm {
 namespace {
 
-/// Number of samples of a motion in a step. The polynomial through them has derivatives with errors of the powers 9 and
-/// 8 of the step.
-constexpr int kSamples = 10;
 /// Newton's method for loops ends when constraints are violated by less than kClosed, or after an update of constraints
 /// violated by less than kNearlyClosed: its error is quadratic. Relative to lengths of the model.
 constexpr double kClosed = 1e-14, kNearlyClosed = 1e-8;
@@ -19,29 +14,6 @@ constexpr int kMostIterations = 12;
 constexpr double kDead = 1e-8;
 /// Relative: differences of a motion's rates that are not jumps but errors of its polynomials.
 constexpr double kSmoothRate = 1e-7;
-
-/// Places of samples within a step: Chebyshev's points, in (-1, 1).
-double sample_place(int sample) {
-  return -std::cos((2 * sample + 1) * kPi / (2 * kSamples));
-}
-
-/// Weights of samples in the derivatives of their polynomial at x, by Chebyshev's polynomials T_n: of the first and of
-/// the second derivative.
-void set_weights(double x, std::vector<double>& first, std::vector<double>& second) {
-  // T and its derivatives at x by their recursion.
-  double value[kSamples] = {1, x}, slope[kSamples] = {0, 1}, bend[kSamples] = {};
-  for (int n = 2; n < kSamples; ++n) {
-    value[n] = 2 * x * value[n - 1] - value[n - 2];
-    slope[n] = 2 * value[n - 1] + 2 * x * slope[n - 1] - slope[n - 2];
-    bend[n] = 4 * slope[n - 1] + 2 * x * bend[n - 1] - bend[n - 2];
-  }
-  first.assign(kSamples, 0), second.assign(kSamples, 0);
-  for (int i = 0; i < kSamples; ++i)
-    for (int n = 1; n < kSamples; ++n) {
-      const double share = 2.0 / kSamples * std::cos(n * std::acos(sample_place(i)));
-      first[i] += share * slope[n], second[i] += share * bend[n];
-    }
-}
 
 NodePose pose_of(const ArticulatedBodies& bodies, int node) {
   NodePose pose;
@@ -88,7 +60,7 @@ Carried point(const ArticulatedBodies& bodies, int node, const Vector3& arm) {
 }  // namespace
 
 DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodies, const ExplicitTableau& tableau)
-    : model_(model), rates_(bodies.rate_count()) {
+    : model_(model), derivatives_(tableau), rates_(bodies.rate_count()) {
   root_column_.assign(rates_, -1);
   factors_.assign(rates_, 1);
   places_.resize(rates_);
@@ -96,7 +68,7 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
     for (int k = 0; k < released_count(model.joints[j].kind); ++k) places_[bodies.first_rate(j) + k] = {j, k};
   const auto rate_of = [&](const Coordinate& c) { return bodies.first_rate(c.joint) + c.component; };
   for (const Coordinate& c : model.coordinates)
-    if (c.motion >= 0) motions_.push_back({rate_of(c), c.joint, c.motion, std::vector<double>(kSamples)});
+    if (c.motion >= 0) motions_.push_back({rate_of(c), c.joint, c.motion, {}});
   for (const Coordinate& c : model.coordinates) {
     if (c.mimicked < 0) continue;
     const Coordinate& leader = model.coordinates[c.mimicked];
@@ -116,12 +88,6 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
   any_ = !motions_.empty() || !followers_.empty() || rows_ > 0;
   if (!any_) return;
 
-  std::vector<double> times = tableau.times;
-  times.push_back(1);
-  for (const double part : times) {
-    first_weights_.emplace_back(), second_weights_.emplace_back();
-    set_weights(2 * part - 1, first_weights_.back(), second_weights_.back());
-  }
   const int roots = static_cast<int>(roots_.size()), moved = static_cast<int>(motions_.size()),
             free = roots - moved - rows_;
   dependent_.resize(rows_), independent_.resize(free);
@@ -139,18 +105,14 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
 }
 
 double DependentRates::derivative(std::size_t stage, int order, const Motion& motion) const {
-  const std::vector<double>& weights = order == 1 ? first_weights_[stage] : second_weights_[stage];
-  double sum = 0;
-  for (int i = 0; i < kSamples; ++i) sum += weights[i] * motion.samples[i];
-  return sum * std::pow(2 / step_, order);
+  return derivatives_(order, stage, motion.samples, step_);
 }
 
 bool DependentRates::begin(double time, double step, std::vector<Released>& released, double* rates,
                            ArticulatedBodies& bodies) {
   step_ = step;
   for (Motion& motion : motions_)
-    for (int i = 0; i < kSamples; ++i)
-      motion.samples[i] = model_.histories[motion.history](time + 0.5 * (1 + sample_place(i)) * step);
+    StageDerivatives::sample(model_.histories[motion.history], time, step, motion.samples);
   if (rows_ == 0) return true;
   follow(released, rates);
   bodies.set(released, rates);

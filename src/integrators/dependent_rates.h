@@ -8,10 +8,10 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include "integrators/stage_derivatives.h"
 #include "joints/articulated_bodies.h"
 #include "joints/closure_maps.h"
 #include "model/state.h"
-#include "schemes/explicit_tableau.h"
 
 namespace flexarm {
 
@@ -48,7 +48,7 @@ class DependentRates {
  private:
   struct Motion {
     int rate, joint, history;
-    std::vector<double> samples;
+    StageDerivatives::Samples samples;
   };
   struct Follower {
     int rate, joint, leader_rate, leader_joint;
@@ -67,6 +67,7 @@ class DependentRates {
   void move(std::vector<Released>& released);
 
   const Model& model_;
+  StageDerivatives derivatives_;
   bool any_ = false;
   int rates_, rows_ = 0;  // numbers of rates and of constraints
   std::vector<Motion> motions_;
@@ -78,7 +79,6 @@ class DependentRates {
   std::vector<int> roots_;                    // rates of the roots, by column
   std::vector<int> dependent_, independent_;  // columns of roots that loops make dependent, and of the others
   std::vector<Place> places_;                 // per rate
-  std::vector<std::vector<double>> first_weights_, second_weights_;  // of samples, per stage and at the end
   double step_ = 0;
   Eigen::VectorXd values_, drives_, follower_bends_, bend_, needed_, forces_, change_, reduced_, right_, root_rates_;
   Eigen::MatrixXd rows_of_rates_, jacobian_, block_, transfer_, columns_, mass_, moved_, small_;

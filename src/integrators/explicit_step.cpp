@@ -31,11 +31,8 @@ const char* explicit_obstacle(const Model& model) {
     if (coordinate.friction_coefficient > 0) return "friction that depends on the load";
   }
   for (const Actuator& actuator : model.actuators) {
-    if (actuator.servo) return "servos";
     if (actuator.drive.gear || actuator.gyroscope) return "rotors with a motion of their own";
     if (actuator.drive.loss > 0) return "losses of gears";
-    if (std::isfinite(actuator.drive.effort_limit) || std::isfinite(actuator.drive.velocity_limit))
-      return "motors with limits";
     if (actuator.spring && actuator.spring->elasticity.backlash > 0) return "play";
   }
   if (!model.reactions.empty()) return "sensors of reactions";
@@ -76,6 +73,7 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
       tableau_(*scheme.tableau),
       bodies_(model),
       dependent_(model, bodies_, tableau_),
+      motors_(model, tableau_),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
@@ -92,14 +90,16 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
     rates_ += position_count(joint.kind);
   }
   work_ = rates_ + bodies_.rate_count();
+  integrals_ = work_ + 2;
   efforts_.resize(bodies_.rate_count());
   armatures_.resize(bodies_.rate_count());
   for (const Coordinate& coordinate : model.coordinates) {
     armatures_[joints_[coordinate.joint].first_rate + coordinate.component] = armature(model, coordinate);
     penalties_.push_back(stop_penalty(coordinate, scheme.contact_time));
   }
-  for (std::vector<double>* numbers : {&begin_, &stage_, &before_, &last_change_}) numbers->resize(work_ + 2);
-  changes_.assign(tableau_.weights.size(), std::vector<double>(work_ + 2));
+  for (std::vector<double>* numbers : {&begin_, &stage_, &before_, &last_change_})
+    numbers->resize(integrals_ + model.actuators.size());
+  changes_.assign(tableau_.weights.size(), begin_);
   last_commands_.resize(model.coordinates.size());
 }
 
@@ -116,6 +116,7 @@ void ExplicitStep::pack(const State& state) {
     std::copy_n(rates.data(), released_count(joints_[j].kind), begin_.data() + rates_ + joints_[j].first_rate);
   }
   write_positions(begin_);
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) begin_[integrals_ + i] = state.actuators[i].servo.integral;
 }
 
 void ExplicitStep::write_positions(std::vector<double>& numbers) const {
@@ -158,7 +159,7 @@ bool ExplicitStep::is_as_left(const State& state) const {
 
 /// Whether the derivatives at the end of the last step hold at the beginning of this one.
 bool ExplicitStep::acts_as_before(const State& state) const {
-  if (values_ != last_values_ || dependent_.has_motions()) return false;
+  if (values_ != last_values_ || dependent_.has_motions() || !motors_.has_kept_inputs()) return false;
   const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   return state.time == last_time_ && state.wrenches.empty() &&
          std::equal(state.commands.begin(), state.commands.end(), last_commands_.begin(), same);
@@ -174,6 +175,12 @@ void ExplicitStep::find_values(double begin, double step, double part) {
     const TimeFunction& function = model_.histories[i];
     values_[i] = inwards == 0 ? function(time) : 2 * function(time + inwards) - function(time + 2 * inwards);
   }
+}
+
+void ExplicitStep::find_inputs(const State& state, double step, std::size_t stage) {
+  const double part = stage < tableau_.times.size() ? tableau_.times[stage] : 1;
+  find_values(state.time, step, part);
+  motors_.set_instant(state, stage, part, values_);
 }
 
 /// Sets the bodies to these numbers, in which it sets dependent coordinates.
@@ -195,11 +202,8 @@ bool ExplicitStep::evaluate(const State& state, std::size_t stage, std::vector<d
   const double* rates = numbers.data() + rates_;
   change[work_] = change[work_ + 1] = 0;
   add_loads(state, change);
-  find_efforts(state, rates, change);
-  if (dependent_.any())
-    dependent_.accelerate(stage, efforts_.data(), armatures_.data(), bodies_, change.data() + rates_);
-  else
-    bodies_.accelerate(efforts_.data(), armatures_.data(), change.data() + rates_);
+  find_efforts(state, numbers, change);
+  accelerate(stage, efforts_.data(), change);
   add_drives(rates, change);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double* rate = rates + joints_[j].first_rate;
@@ -217,6 +221,13 @@ bool ExplicitStep::evaluate(const State& state, std::size_t stage, std::vector<d
   return true;
 }
 
+void ExplicitStep::accelerate(std::size_t stage, const double* efforts, std::vector<double>& change) {
+  if (dependent_.any())
+    dependent_.accelerate(stage, efforts, armatures_.data(), bodies_, change.data() + rates_);
+  else
+    bodies_.accelerate(efforts, armatures_.data(), change.data() + rates_);
+}
+
 /// Sets the efforts of motions, and adds their work to `change`.
 void ExplicitStep::add_drives(const double* rates, std::vector<double>& change) {
   if (!dependent_.has_motions()) return;
@@ -230,17 +241,23 @@ void ExplicitStep::add_drives(const double* rates, std::vector<double>& change) 
 }
 
 /// Sets the efforts on all rates. Adds their work and what they dissipate to `change`.
-void ExplicitStep::find_efforts(const State& state, const double* rates, std::vector<double>& change) {
+void ExplicitStep::find_efforts(const State& state, const std::vector<double>& numbers, std::vector<double>& change) {
   for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
     const Coordinate& coordinate = model_.coordinates[i];
     const int at = joints_[coordinate.joint].first_rate + coordinate.component;
-    const double rate = rates[at];
+    const double rate = numbers[rates_ + at];
     const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
     applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
-    if (coordinate.motion >= 0) applied_[i] = 0;  // until the motion is known to need one
+    const double position = coordinate.is_angle ? 0 : released_[coordinate.joint].displacement[coordinate.component];
+    if (coordinate.motion >= 0) {
+      applied_[i] = 0;  // until the motion is known to need one
+    } else if (coordinate.actuator >= 0) {
+      const std::size_t integral = integrals_ + coordinate.actuator;
+      applied_[i] =
+          motors_.effort(coordinate.actuator, state, applied_[i], position, rate, numbers[integral], change[integral]);
+    }
     double& effort = efforts_[at] = applied_[i];
     change[work_] += applied_[i] * rate;
-    const double position = coordinate.is_angle ? 0 : released_[coordinate.joint].displacement[coordinate.component];
     if (resists(coordinate)) {
       CoordinateStep now{position, position, rate, 1};
       now.at_end = true;
@@ -299,6 +316,33 @@ bool ExplicitStep::begin_dependent(const State& state, double step, double& work
   return true;
 }
 
+/// Where set points have jumped in the step, changes the rates at its end by the impulses of servos. Returns false if a
+/// loop cannot be closed.
+bool ExplicitStep::strike(const State& state) {
+  std::fill(efforts_.begin(), efforts_.end(), 0.0);
+  bool jumps = false;
+  for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
+    const double impulse = motors_.impulse(i, state, tableau_.weights);
+    const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
+    efforts_[joints_[coordinate.joint].first_rate + coordinate.component] += impulse;
+    jumps = jumps || impulse != 0;
+  }
+  if (!jumps) return true;
+  // Accelerations are affine in efforts, so the change of rates is a difference of two.
+  const std::size_t stages = changes_.size();
+  std::fill(before_.begin(), before_.end(), 0.0);
+  if (!place(stages, stage_)) return false;
+  accelerate(stages, before_.data(), changes_[0]);
+  if (!place(stages, stage_)) return false;
+  accelerate(stages, efforts_.data(), last_change_);
+  for (std::size_t i = 0; i < efforts_.size(); ++i) {
+    const double change = last_change_[rates_ + i] - changes_[0][rates_ + i];
+    stage_[work_] += efforts_[i] * (stage_[rates_ + i] + 0.5 * change);
+    stage_[rates_ + i] += change;
+  }
+  return true;
+}
+
 StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses) {
   using Reason = StepResult::Reason;
   const bool goes_on = reuses && is_as_left(state);
@@ -311,7 +355,8 @@ StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses)
   else
     pack(state);
   begin_[work_] = begin_[work_ + 1] = 0;
-  find_values(state.time, step, 0);
+  motors_.begin(state, step);
+  find_inputs(state, step, 0);
   if (dependent_.any() && !begin_dependent(state, step, begin_[work_])) return fail(Reason::DeadPoint);
   const std::size_t stages = changes_.size();
   if (goes_on && acts_as_before(state))
@@ -326,22 +371,23 @@ StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses)
       const double weight = step * weights[r];
       for (std::size_t i = 0; i < stage_.size(); ++i) stage_[i] += weight * changes_[r][i];
     }
-    find_values(state.time, step, s < stages ? tableau_.times[s] : 1);
+    find_inputs(state, step, s);
     if (s < stages && !evaluate(state, s, stage_, changes_[s])) return fail(Reason::DeadPoint);
   }
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (!std::all_of(stage_.begin(), stage_.end(), is_finite)) return fail(Reason::NotFinite);
   normalise(stage_);
+  if (!strike(state)) return fail(Reason::DeadPoint);
   const double work = stage_[work_], dissipated = stage_[work_ + 1];
   if (!evaluate(state, stages, stage_, last_change_)) return fail(Reason::DeadPoint);
   if (dependent_.any() && dependent_.largest_opening(bodies_) > kOpenLoop) return fail(Reason::OpenLoop);
   state.work += work;
   state.dissipated += dissipated;
-  write(state, state.time + step);
+  write(state, step);
   return Reason::None;
 }
 
-void ExplicitStep::write(State& state, double time) {
+void ExplicitStep::write(State& state, double step) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const int node = model_.joints[j].slave;
     state.released[j] = released_[j];
@@ -359,13 +405,16 @@ void ExplicitStep::write(State& state, double time) {
   for (std::size_t i = 0; i < state.actuators.size(); ++i) {
     const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
     state.actuators[i].angle = released_[coordinate.joint].displacement[coordinate.component];
-    state.actuators[i].rate = stage_[rates_ + joints_[coordinate.joint].first_rate + coordinate.component];
+    double& rate = state.actuators[i].rate =
+        stage_[rates_ + joints_[coordinate.joint].first_rate + coordinate.component];
+    motors_.accept(i, step, rate, stage_[integrals_ + i], state.actuators[i].servo);
   }
   state.history.clear();
-  state.time = last_time_ = time;
+  state.time = last_time_ = state.time + step;
   std::copy(state.commands.begin(), state.commands.end(), last_commands_.begin());
   last_nodes_ = state.nodes;
   last_values_ = values_;
+  motors_.keep_inputs();
 }
 
 }  // namespace flexarm

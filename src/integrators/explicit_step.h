@@ -5,6 +5,7 @@
 
 #include "flexarm/model/results.h"
 #include "integrators/dependent_rates.h"
+#include "integrators/explicit_motors.h"
 #include "joints/articulated_bodies.h"
 #include "joints/joint_stop.h"
 #include "model/state.h"
@@ -18,8 +19,8 @@ constexpr double kOpenLoop = 1e-4;
 /// Returns what explicit schemes cannot simulate in a model, in words; null: nothing.
 const char* explicit_obstacle(const Model& model);
 
-/// Integrates the released coordinates, their rates, and the work and the dissipation that the state adds up. Allocates
-/// no memory after construction.
+/// Integrates the released coordinates, their rates, the integrals of servos, and the work and the dissipation that the
+/// state adds up. Allocates no memory after construction.
 class ExplicitStep {
  public:
   /// The model must outlive the step.
@@ -38,13 +39,17 @@ class ExplicitStep {
   };
   void pack(const State& state);
   void unpack(const std::vector<double>& numbers);
+  /// Finds what depends on time at a part of a step, which is that of a stage or of the end.
+  void find_inputs(const State& state, double step, std::size_t stage);
   void find_values(double begin, double step, double part);
   /// Computes derivatives at a stage, or at the end, which follows the last stage. Sets dependent coordinates among the
   /// numbers. Returns false if a loop cannot be closed.
   bool evaluate(const State& state, std::size_t stage, std::vector<double>& numbers, std::vector<double>& change);
   bool place(std::size_t stage, std::vector<double>& numbers);
+  void accelerate(std::size_t stage, const double* efforts, std::vector<double>& change);
   bool begin_dependent(const State& state, double step, double& work);
-  void find_efforts(const State& state, const double* rates, std::vector<double>& change);
+  void find_efforts(const State& state, const std::vector<double>& numbers, std::vector<double>& change);
+  bool strike(const State& state);
   void add_drives(const double* rates, std::vector<double>& change);
   void add_loads(const State& state, std::vector<double>& change);
   void add_load(const NodalLoad& load, double scale, std::vector<double>& change);
@@ -55,25 +60,27 @@ class ExplicitStep {
   void write_positions(std::vector<double>& numbers) const;
   bool is_as_left(const State& state) const;
   bool acts_as_before(const State& state) const;
-  void write(State& state, double time);
+  void write(State& state, double step);
 
   const Model& model_;
   const ExplicitTableau& tableau_;
   ArticulatedBodies bodies_;
   DependentRates dependent_;
+  ExplicitMotors motors_;
   std::vector<Joint> joints_;
   std::vector<StopPenalty> penalties_;  // per coordinate
   std::vector<NodePose> poses_;
   std::vector<Vector6> velocities_;
   std::vector<Released> released_;
   std::vector<double> efforts_, applied_, armatures_;  // per rate; `applied_`: per coordinate, without passive ones
-  /// Positions of all joints, their rates, work, dissipation: at the beginning, and at a stage or the end.
+  /// Positions of all joints, their rates, work, dissipation, integrals of servos: at the beginning, and at a stage or
+  /// the end.
   std::vector<double> begin_, stage_, before_;
   std::vector<std::vector<double>> changes_;  // per stage
   std::vector<double> last_change_, last_commands_;
-  std::size_t rates_ = 0, work_ = 0;          // where the rates, and work and dissipation, begin
-  std::vector<int> varying_;                  // functions of time that are not constant
-  std::vector<double> values_, last_values_;  // of all functions of time: now, and at the end of the last step
+  std::size_t rates_ = 0, work_ = 0, integrals_ = 0;  // where the rates, work and dissipation, and integrals begin
+  std::vector<int> varying_;                          // functions of time that are not constant
+  std::vector<double> values_, last_values_;          // of all functions of time: now, and at the end of the last step
   double last_time_ = 0;
   std::vector<NodeState> last_nodes_;  // as they were left; empty: there was no step
 };

@@ -163,6 +163,13 @@ std::size_t outputs_of(const Servo& servo) {
   return servo.sample_time > 0 ? 2 + static_cast<std::size_t>(std::ceil(servo.delay / servo.sample_time)) : 0;
 }
 
+double set_rate_of_sample(const Servo& servo, const ServoCommand& command, const TimeFunction* history, double time,
+                          double tolerance) {
+  const double period = servo.sample_time;
+  if (!history) return command.set_rate_at(time - 0.5 * period, tolerance);
+  return ((*history)(time) - (*history)(time - period)) / period;
+}
+
 void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state) {
   assert(servo.sample_time > 0 && state.outputs.size() == outputs_of(servo));
   const double period = servo.sample_time;

@@ -11,6 +11,7 @@
 ///
 /// A sampled controller measures at the beginning of the step in which a sample is due, and holds its output.
 
+#include "flexarm/math/time_function.h"
 #include "joints/coordinate_step.h"
 #include "model/actuator.h"
 
@@ -77,6 +78,11 @@ void settle(double measured, double output, ServoState& state);
 double hand_to_integral(const ServoLaw& law, double error, ServoState& state);
 
 // ---- sampled controllers
+
+/// Returns the mean rate of the set point since the last sample. `history`: the function of the scene that it follows,
+/// or null. `tolerance`: for the time at which a commanded set point arrives [s].
+double set_rate_of_sample(const Servo& servo, const ServoCommand& command, const TimeFunction* history, double time,
+                          double tolerance);
 
 /// Takes a sample if one is due. `set_rate`: mean rate of the set point since the last sample.
 void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state);

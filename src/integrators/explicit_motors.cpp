@@ -1,0 +1,166 @@
+#include "integrators/explicit_motors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "joints/motor_step.h"
+
+namespace flexarm {
+namespace {
+
+/// Relative to a step: how far from its ends commanded set points are evaluated, whose rate may jump there; and the
+/// tolerance for the times of samples, which are sums with round-off.
+constexpr double kInwards = 1e-9, kRoundOff = 1e-6;
+/// Relative to the set point: differences that are no jumps, but round-off of derivatives.
+constexpr double kNoJump = 1e-9;
+
+}  // namespace
+
+bool ExplicitMotors::Input::operator==(const Input& other) const {
+  return set_point == other.set_point && set_rate == other.set_rate && feedforward == other.feedforward &&
+         held == other.held && law == other.law && off == other.off;
+}
+
+ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tableau)
+    : model_(model),
+      derivatives_(tableau),
+      samples_(model.actuators.size()),
+      sampled_(model.actuators.size()),
+      held_(model.actuators.size(), 0.0),
+      inputs_(model.actuators.size()),
+      kept_inputs_(model.actuators.size()) {
+  for (std::size_t i = 0; i < sampled_.size(); ++i)
+    if (model.actuators[i].servo) sampled_[i].outputs.resize(outputs_of(*model.actuators[i].servo));
+}
+
+bool ExplicitMotors::has_servo(std::size_t actuator) const {
+  return model_.actuators[actuator].servo && model_.coordinates[model_.actuators[actuator].coordinate].motion < 0;
+}
+
+const TimeFunction* ExplicitMotors::set_point_of_scene(const Servo& servo, const ServoState& state) const {
+  return servo.set_point >= 0 && std::isnan(state.set_point) ? &model_.histories[servo.set_point] : nullptr;
+}
+
+// ---------------------------------------------------------------- inputs
+
+void ExplicitMotors::begin(const State& state, double step) {
+  begin_ = state.time;
+  step_ = step;
+  for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
+    if (!has_servo(i)) continue;
+    const Servo& servo = *model_.actuators[i].servo;
+    const ActuatorState& own = state.actuators[i];
+    const TimeFunction* history = set_point_of_scene(servo, own.servo);
+    if (servo.sample_time > 0)
+      take_sample(model_.actuators[i], own, sampled_[i]);
+    else if (history && !history->constant())
+      StageDerivatives::sample(*history, begin_, step, samples_[i]);
+    if (servo.sample_time > 0) held_[i] = held_output(servo, sampled_[i], begin_, step);
+  }
+}
+
+void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& own, ServoState& servo) const {
+  const Servo& data = *actuator.servo;
+  servo = own.servo;
+  ServoInput input;
+  input.time = begin_;
+  input.measured.step = step_;
+  input.measured.begin = own.angle;
+  const TimeFunction* history = set_point_of_scene(data, own.servo);
+  const double set = history                           ? (*history)(begin_)
+                     : std::isnan(own.servo.set_point) ? data.start
+                                                       : own.servo.set_point_at(begin_);
+  input.set_point = {set, set};
+  if (data.feedforward >= 0) input.feedforward = model_.histories[data.feedforward](begin_);
+  sample(data, input, set_rate_of_sample(data, own.servo, history, begin_, kRoundOff * step_), servo);
+}
+
+void ExplicitMotors::set_instant(const State& state, std::size_t stage, double part,
+                                 const std::vector<double>& values) {
+  const double time = begin_ + std::clamp(part, kInwards, 1 - kInwards) * step_;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (!has_servo(i)) continue;
+    const Servo& servo = *model_.actuators[i].servo;
+    const ServoState& own = state.actuators[i].servo;
+    Input& input = inputs_[i] = {};
+    input.law = own.law;
+    input.off = own.off;
+    if (servo.sample_time > 0) {
+      input.held = held_[i];
+      continue;
+    }
+    if (servo.feedforward >= 0) input.feedforward = values[servo.feedforward];
+    if (const TimeFunction* history = set_point_of_scene(servo, own)) {
+      input.set_point = values[servo.set_point];
+      if (!history->constant()) input.set_rate = derivatives_(1, stage, samples_[i], step_);
+    } else if (std::isnan(own.set_point)) {
+      input.set_point = servo.start;
+    } else {
+      input.set_point = own.set_point_at(begin_ + part * step_);
+      input.set_rate = own.set_rate_at(time, 0);
+    }
+  }
+}
+
+// ---------------------------------------------------------------- efforts
+
+double ExplicitMotors::limit(std::size_t actuator) const {
+  const Actuator& data = model_.actuators[actuator];
+  if (!data.servo) return Drive::kInfinity;
+  const double of_coordinate = model_.coordinates[data.coordinate].effort_limit;
+  return of_coordinate > 0 ? std::min(of_coordinate, data.servo->effort_limit) : data.servo->effort_limit;
+}
+
+double ExplicitMotors::effort(std::size_t actuator, const State& state, double other, double position, double rate,
+                              double integral, double& integral_rate) const {
+  const Actuator& data = model_.actuators[actuator];
+  integral_rate = 0;
+  const MotorRange range = motor_range(data.drive, limit(actuator), rate);
+  if (!data.servo) return std::clamp(other, range.lowest, range.highest);
+  const Servo& servo = *data.servo;
+  const Input& input = inputs_[actuator];
+  if (input.off > 0) return 0;
+  if (servo.sample_time > 0) return std::clamp(other + input.held, range.lowest, range.highest);
+  const ServoLaw& law = law_of(servo, state.actuators[actuator].servo);
+  const ServoInstant at{input.set_point, input.set_rate, position, rate, integral, input.feedforward};
+  const double demand = other + servo_effort(law, at), given = std::clamp(demand, range.lowest, range.highest);
+  if (law.mode == ServoMode::Effort) return given;
+  const bool is_velocity = law.mode == ServoMode::Velocity;
+  integral_rate = input.set_point - (is_velocity ? rate : position);
+  const double gain = is_velocity ? law.proportional : law.integral;
+  if (law.tracking_time > 0 && gain > 0) integral_rate += (given - demand) / (gain * law.tracking_time);
+  return given;
+}
+
+double ExplicitMotors::impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const {
+  if (!has_servo(actuator)) return 0;
+  const Actuator& data = model_.actuators[actuator];
+  const Servo& servo = *data.servo;
+  if (std::isfinite(std::min(limit(actuator), data.drive.effort_limit))) return 0;
+  const ServoState& own = state.actuators[actuator].servo;
+  const ServoLaw& law = law_of(servo, own);
+  const TimeFunction* history = set_point_of_scene(servo, own);
+  if (servo.sample_time > 0 || !history || history->constant() || law.mode != ServoMode::Position || own.off > 0)
+    return 0;
+  const double begin = (*history)(begin_), end = (*history)(begin_ + step_);
+  double jump = end - begin;
+  for (std::size_t s = 0; s < weights.size(); ++s)
+    if (weights[s] != 0) jump -= step_ * weights[s] * derivatives_(1, s, samples_[actuator], step_);
+  return std::abs(jump) > kNoJump * (std::abs(begin) + std::abs(end)) ? law.derivative * jump : 0;
+}
+
+void ExplicitMotors::accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const {
+  if (!has_servo(actuator)) return;
+  if (model_.actuators[actuator].servo->sample_time > 0) {
+    servo = sampled_[actuator];
+  } else {
+    const Input& input = inputs_[actuator];
+    const bool is_velocity = law_of(*model_.actuators[actuator].servo, servo).mode == ServoMode::Velocity;
+    servo.integral = integral;
+    servo.average = step * ((is_velocity ? input.set_point : input.set_rate) - rate);
+    servo.delayed_rate = -rate;
+  }
+  if (servo.off > 0) servo.integral = 0;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,64 @@
+#pragma once
+/// Motors with limits, and servos, at the instants of a step of an explicit scheme. (docs/notes/explicit.md 5)
+
+#include <vector>
+
+#include "integrators/stage_derivatives.h"
+#include "joints/servo_step.h"
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+/// The motors of a model whose gears are rigid, so that they turn with their coordinates. Allocates no memory after
+/// construction.
+class ExplicitMotors {
+ public:
+  ExplicitMotors(const Model& model, const ExplicitTableau& tableau);
+
+  /// Begins a step: samples set points, and takes the samples of sampled servos that are due.
+  void begin(const State& state, double step);
+  /// Sets the inputs of all servos at a stage, or at the end if that is the number of stages. `part`: of the step.
+  /// `values`: of the model's functions of time.
+  void set_instant(const State& state, std::size_t stage, double part, const std::vector<double>& values);
+  /// Whether the inputs are those of the last call of keep_inputs().
+  bool has_kept_inputs() const { return inputs_ == kept_inputs_; }
+  void keep_inputs() { kept_inputs_ = inputs_; }
+
+  /// The motor's effort at the instant [N m or N]. `other`: effort of the scene or of commands on its coordinate.
+  /// `integral`: of its servo. `integral_rate`: output, the derivative of the integral.
+  double effort(std::size_t actuator, const State& state, double other, double position, double rate, double integral,
+                double& integral_rate) const;
+  /// The impulse on the coordinate by what jumped of the set point in the step, times the gain of the derivative. It is
+  /// zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
+  double impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const;
+  /// Writes the servo's state at the end of the step.
+  void accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const;
+
+ private:
+  /// What a servo is given from outside at an instant.
+  struct Input {
+    double set_point = 0, set_rate = 0, feedforward = 0;
+    double held = 0;  // output of a sampled servo
+    double law = 0, off = 0;
+    bool operator==(const Input& other) const;
+  };
+  /// Limit of the motor's effort besides those of its drive.
+  double limit(std::size_t actuator) const;
+  /// Whether an actuator has a servo that moves its coordinate.
+  bool has_servo(std::size_t actuator) const;
+  /// The scene's function for the set point; null if there is none, or a command is in force.
+  const TimeFunction* set_point_of_scene(const Servo& servo, const ServoState& state) const;
+  void take_sample(const Actuator& actuator, const ActuatorState& own, ServoState& servo) const;
+
+  const Model& model_;
+  StageDerivatives derivatives_;
+  double begin_ = 0, step_ = 0;  // of the step
+  // Per actuator:
+  std::vector<StageDerivatives::Samples> samples_;  // of set points
+  std::vector<ServoState> sampled_;                 // of sampled servos, after the sample at the beginning
+  std::vector<double> held_;                        // mean output of sampled servos over the step
+  std::vector<Input> inputs_, kept_inputs_;
+};
+
+}  // namespace flexarm
