@@ -10,7 +10,7 @@ namespace {
 
 /// Relative to a step: how far from its ends commanded set points are evaluated, whose rate may jump there; and the
 /// tolerance for the times of samples, which are sums with round-off.
-constexpr double kInwards = 1e-9, kRoundOff = 1e-6;
+constexpr double kFromEnds = 1e-9, kOffSample = 1e-6;
 /// Relative to the set point: differences that are no jumps, but round-off of derivatives.
 constexpr double kNoJump = 1e-9;
 
@@ -72,12 +72,12 @@ void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& 
                                                        : own.servo.set_point_at(begin_);
   input.set_point = {set, set};
   if (data.feedforward >= 0) input.feedforward = model_.histories[data.feedforward](begin_);
-  sample(data, input, set_rate_of_sample(data, own.servo, history, begin_, kRoundOff * step_), servo);
+  sample(data, input, set_rate_of_sample(data, own.servo, history, begin_, kOffSample * step_), servo);
 }
 
 void ExplicitMotors::set_instant(const State& state, std::size_t stage, double part,
                                  const std::vector<double>& values) {
-  const double time = begin_ + std::clamp(part, kInwards, 1 - kInwards) * step_;
+  const double time = begin_ + std::clamp(part, kFromEnds, 1 - kFromEnds) * step_;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (!has_servo(i)) continue;
     const Servo& servo = *model_.actuators[i].servo;

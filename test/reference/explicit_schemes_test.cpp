@@ -355,7 +355,8 @@ TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
   const auto expect_no = [&](const std::string& what, const std::string& text) {
     EXPECT_NE(text.find(refused + what), std::string::npos) << text;
   };
-  expect_no("servos", refusal(hinge + end + R"(<servo joint="hinge" mode="position" kp="4" kd="1" set_point="1"/>)"));
+  expect_no("rotors with a motion of their own",
+            refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" stiffness="900"/>)"));
   expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
   expect_no("springs, lines, drag or contacts",
             refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"

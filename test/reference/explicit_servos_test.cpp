@@ -80,7 +80,7 @@ TEST_P(ExplicitServos, RunUpOnTheTorqueSpeedLine) {
   scene::DriveDescription& drive = scene.drive("rail", 1, 0);
   drive.effort_limit = force;
   drive.velocity_limit = speed;
-  scene.scene.efforts.push_back({"rail", TimeFunction(1e3)});
+  scene.scene.efforts.push_back({"rail", TimeFunction(1e3), {}});
   const double lag = std::exp(-end / time);
   expect_order(scene, end, {speed * (end - time * (1 - lag)), speed * (1 - lag)});
 }
