@@ -29,6 +29,8 @@ ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tablea
       held_(model.actuators.size(), 0.0),
       inputs_(model.actuators.size()),
       kept_inputs_(model.actuators.size()) {
+  varies_.reserve(model.histories.size());
+  for (const TimeFunction& history : model.histories) varies_.push_back(!history.constant());
   for (std::size_t i = 0; i < sampled_.size(); ++i)
     if (model.actuators[i].servo) sampled_[i].outputs.resize(outputs_of(*model.actuators[i].servo));
 }
@@ -53,7 +55,7 @@ void ExplicitMotors::begin(const State& state, double step) {
     const TimeFunction* history = set_point_of_scene(servo, own.servo);
     if (servo.sample_time > 0)
       take_sample(model_.actuators[i], own, sampled_[i]);
-    else if (history && !history->constant())
+    else if (history && varies_[servo.set_point])
       StageDerivatives::sample(*history, begin_, step, samples_[i]);
     if (servo.sample_time > 0) held_[i] = held_output(servo, sampled_[i], begin_, step);
   }
@@ -90,9 +92,9 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
       continue;
     }
     if (servo.feedforward >= 0) input.feedforward = values[servo.feedforward];
-    if (const TimeFunction* history = set_point_of_scene(servo, own)) {
+    if (set_point_of_scene(servo, own)) {
       input.set_point = values[servo.set_point];
-      if (!history->constant()) input.set_rate = derivatives_(1, stage, samples_[i], step_);
+      if (varies_[servo.set_point]) input.set_rate = derivatives_(1, stage, samples_[i], step_);
     } else if (std::isnan(own.set_point)) {
       input.set_point = servo.start;
     } else {
@@ -140,7 +142,7 @@ double ExplicitMotors::impulse(std::size_t actuator, const State& state, const s
   const ServoState& own = state.actuators[actuator].servo;
   const ServoLaw& law = law_of(servo, own);
   const TimeFunction* history = set_point_of_scene(servo, own);
-  if (servo.sample_time > 0 || !history || history->constant() || law.mode != ServoMode::Position || own.off > 0)
+  if (servo.sample_time > 0 || !history || !varies_[servo.set_point] || law.mode != ServoMode::Position || own.off > 0)
     return 0;
   const double begin = (*history)(begin_), end = (*history)(begin_ + step_);
   double jump = end - begin;

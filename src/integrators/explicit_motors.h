@@ -54,6 +54,7 @@ class ExplicitMotors {
   const Model& model_;
   StageDerivatives derivatives_;
   double begin_ = 0, step_ = 0;  // of the step
+  std::vector<bool> varies_;     // per function of time: whether it is not constant
   // Per actuator:
   std::vector<StageDerivatives::Samples> samples_;  // of set points
   std::vector<ServoState> sampled_;                 // of sampled servos, after the sample at the beginning
