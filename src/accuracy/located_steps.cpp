@@ -26,6 +26,10 @@ constexpr double kShortest = 0.05;
 constexpr double kRefinement = 2;
 /// Relative to a step: sums of steps may miss times by this.
 constexpr double kMissedTime = 1e-9;
+/// Relative to the longest cell: length of the steps before and after a jump of a set point that strikes.
+constexpr double kStrike = 1e-6;
+/// Relative to the set point: a difference over a millionth of such a step that is a jump.
+constexpr double kJump = 1e-6;
 /// Range of the tolerance of Newton's method.
 constexpr double kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 
@@ -45,6 +49,39 @@ void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, do
   const double lag = std::fmod(actuator.servo->delay, period);
   if (lag == 0) return;
   for (double n = std::ceil((begin - lag) / period); n * period + lag < end; ++n) times.push_back(n * period + lag);
+}
+
+/// Whether the set point of a servo jumps at a time, so that the derivative of its error strikes.
+bool strikes(const Model& model, const State& state, std::size_t actuator, double time, double length) {
+  const Actuator& data = model.actuators[actuator];
+  if (!data.servo || data.servo->sample_time > 0 || data.servo->set_point < 0) return false;
+  const ServoState& servo = state.actuators[actuator].servo;
+  const ServoLaw& law = law_of(*data.servo, servo);
+  if (!std::isnan(servo.set_point) || law.mode != ServoMode::Position || law.derivative == 0) return false;
+  const TimeFunction& history = model.histories[data.servo->set_point];
+  const double before = history(time - 1e-6 * length), after = history(time + 1e-6 * length);
+  return std::abs(after - before) > kJump * std::max(std::abs(before), std::abs(after));
+}
+
+/// Adds ends of short cells before and after such times. A step spreads the strike of a servo over its length, and an
+/// implicit scheme would otherwise have an error of first order there. An explicit scheme changes velocities at once.
+std::vector<double> with_strikes_apart(const Simulation& simulation, const std::vector<double>& cells) {
+  if (scheme_of(simulation).tableau) return cells;
+  const Model& model = model_of(simulation);
+  double longest = 0;
+  for (std::size_t i = 1; i < cells.size(); ++i) longest = std::max(longest, cells[i] - cells[i - 1]);
+  const double length = kStrike * longest;
+  std::vector<double> out;
+  out.reserve(3 * cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    bool is_struck = false;
+    for (std::size_t k = 0; k < model.actuators.size(); ++k)
+      is_struck = is_struck || strikes(model, state_of(simulation), k, cells[i], length);
+    if (is_struck && i > 0 && cells[i] - cells[i - 1] > 3 * length) out.push_back(cells[i] - length);
+    out.push_back(cells[i]);
+    if (is_struck && i + 1 < cells.size() && cells[i + 1] - cells[i] > 3 * length) out.push_back(cells[i] + length);
+  }
+  return out;
 }
 
 /// Largest effort of an actuator's motor.
@@ -87,8 +124,8 @@ std::vector<double> known_corners(const Simulation& simulation, double begin, do
   return times;
 }
 
-LocatedSteps::LocatedSteps(Simulation& simulation, std::vector<double> cells)
-    : simulation_(simulation), cells_(std::move(cells)), has_events_(may_have_events(simulation)) {
+LocatedSteps::LocatedSteps(Simulation& simulation, const std::vector<double>& cells)
+    : simulation_(simulation), cells_(with_strikes_apart(simulation, cells)), has_events_(may_have_events(simulation)) {
   for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
 }
 

@@ -13,12 +13,13 @@ namespace flexarm {
 std::vector<double> known_corners(const Simulation& simulation, double begin, double end);
 
 /// Takes a simulation through a time that is cut into cells. At the end of a cell there is a corner, or results are
-/// needed. The steps of a cell have equal lengths. Steps also end at events, after which the rest of the cell is
+/// needed. The steps of a cell have equal lengths. Beside jumps that strike, such as those of a set point that a
+/// servo's derivative follows, there are short cells. Steps also end at events, after which the rest of the cell is
 /// divided anew.
 class LocatedSteps {
  public:
   /// `cells`: ends of the cells, increasing. The first number is the time at which the simulation begins [s].
-  LocatedSteps(Simulation& simulation, std::vector<double> cells);
+  LocatedSteps(Simulation& simulation, const std::vector<double>& cells);
 
   /// Starts again with the first cell. The longest cell gets `steps` steps. Shorter ones get fewer, by the square root
   /// of their length, since their local errors are small. `tolerance` of Newton's method is for the longest steps.

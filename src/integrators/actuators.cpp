@@ -15,6 +15,8 @@ namespace {
 constexpr double kAtRest = 1e-12;
 /// Fraction of a step by which its end, a sum of steps, may miss a given time because of round-off.
 constexpr double kRoundOff = 1e-6;
+/// Relative to a step of the scene: shorter steps are for what strikes, in which nothing relaxes.
+constexpr double kStrike = 1e-3;
 
 }  // namespace
 
@@ -121,14 +123,15 @@ SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const
   const TimeFunction& history = configuration_.model().histories[servo.set_point];
   const Scheme& scheme = configuration_.scheme();
   const double begin = scheme.is_static ? 0 : configuration_.state().time, end = begin + configuration_.step();
-  SetPoint out(history(begin), history(end));
-  if (scheme.is_static) return out;
+  if (scheme.is_static) return {history(begin), history(end)};
+  const double step = configuration_.step();
+  SetPoint out(set_point_at_border(history, begin, step), set_point_at_border(history, end, step));
   out.mean = histories_.of_servo(servo.set_point).mean;
   out.acting = histories_.of_servo(servo.set_point).acting;
   if (scheme.is_incremental() || law_of(servo, state).mode != ServoMode::Position) return out;
   // If the set point jumps, its rate is an impulse.
   out.rate_at_end = history.derivative(end);
-  const double mean_rate = (out.end - out.begin) / configuration_.step();
+  const double mean_rate = (out.end - out.begin) / step;
   out.acting_rate = out.rate_at_end + mean_rate - 0.5 * (history.derivative(begin) + out.rate_at_end);
   return out;
 }
@@ -162,8 +165,9 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
   if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.of_servo(servo.feedforward).acting;
   // In a composition, the errors of the sub-steps cancel only if all sub-steps use the same rule. So there is no
   // relaxation.
-  if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static)
-    input.relaxation = std::min(scheme.contact_time / kContactSteps, configuration_.step());
+  const double step = configuration_.step(), of_scene = scheme.contact_time / kContactSteps;
+  if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static && step > kStrike * of_scene)
+    input.relaxation = std::min(of_scene, step);
   return input;
 }
 

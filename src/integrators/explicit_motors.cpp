@@ -27,6 +27,7 @@ ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tablea
       samples_(model.actuators.size()),
       sampled_(model.actuators.size()),
       held_(model.actuators.size(), 0.0),
+      first_(model.actuators.size(), 0.0),
       inputs_(model.actuators.size()),
       kept_inputs_(model.actuators.size()) {
   varies_.reserve(model.histories.size());
@@ -101,6 +102,7 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
       input.set_point = own.set_point_at(begin_ + part * step_);
       input.set_rate = own.set_rate_at(time, 0);
     }
+    if (stage == 0) first_[i] = input.set_point;
   }
 }
 
@@ -134,21 +136,41 @@ double ExplicitMotors::effort(std::size_t actuator, const State& state, double o
   return given;
 }
 
-double ExplicitMotors::impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const {
-  if (!has_servo(actuator)) return 0;
+const TimeFunction* ExplicitMotors::striking_set_point(std::size_t actuator, const State& state) const {
+  if (!has_servo(actuator)) return nullptr;
   const Actuator& data = model_.actuators[actuator];
   const Servo& servo = *data.servo;
-  if (std::isfinite(std::min(limit(actuator), data.drive.effort_limit))) return 0;
   const ServoState& own = state.actuators[actuator].servo;
   const ServoLaw& law = law_of(servo, own);
+  const bool is_limited = std::isfinite(std::min(limit(actuator), data.drive.effort_limit));
+  if (is_limited || servo.sample_time > 0 || law.mode != ServoMode::Position || law.derivative == 0 || own.off > 0)
+    return nullptr;
   const TimeFunction* history = set_point_of_scene(servo, own);
-  if (servo.sample_time > 0 || !history || !varies_[servo.set_point] || law.mode != ServoMode::Position || own.off > 0)
-    return 0;
-  const double begin = (*history)(begin_), end = (*history)(begin_ + step_);
-  double jump = end - begin;
+  return history && varies_[servo.set_point] ? history : nullptr;
+}
+
+/// The impulse by a change of the set point of which a part is smooth.
+double ExplicitMotors::impulse_by(std::size_t actuator, const State& state, double from, double to,
+                                  double smooth) const {
+  const double jump = to - from - smooth;
+  const ServoLaw& law = law_of(*model_.actuators[actuator].servo, state.actuators[actuator].servo);
+  return std::abs(jump) > kNoJump * (std::abs(from) + std::abs(to)) ? law.derivative * jump : 0;
+}
+
+double ExplicitMotors::first_impulse(std::size_t actuator, const State& state) const {
+  const TimeFunction* history = striking_set_point(actuator, state);
+  if (!history) return 0;
+  return impulse_by(actuator, state, set_point_at_border(*history, begin_, step_), first_[actuator], 0);
+}
+
+double ExplicitMotors::later_impulse(std::size_t actuator, const State& state,
+                                     const std::vector<double>& weights) const {
+  const TimeFunction* history = striking_set_point(actuator, state);
+  if (!history) return 0;
+  double smooth = 0;
   for (std::size_t s = 0; s < weights.size(); ++s)
-    if (weights[s] != 0) jump -= step_ * weights[s] * derivatives_(1, s, samples_[actuator], step_);
-  return std::abs(jump) > kNoJump * (std::abs(begin) + std::abs(end)) ? law.derivative * jump : 0;
+    if (weights[s] != 0) smooth += step_ * weights[s] * derivatives_(1, s, samples_[actuator], step_);
+  return impulse_by(actuator, state, first_[actuator], set_point_at_border(*history, begin_ + step_, step_), smooth);
 }
 
 void ExplicitMotors::accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const {

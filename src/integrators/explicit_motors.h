@@ -29,9 +29,10 @@ class ExplicitMotors {
   /// `integral`: of its servo. `integral_rate`: output, the derivative of the integral.
   double effort(std::size_t actuator, const State& state, double other, double position, double rate, double integral,
                 double& integral_rate) const;
-  /// The impulse on the coordinate by what jumped of the set point in the step, times the gain of the derivative. It is
-  /// zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
-  double impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const;
+  /// The impulse on the coordinate by what jumps of the set point, times the gain of the derivative: at the beginning
+  /// of the step, or in it after that. It is zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
+  double first_impulse(std::size_t actuator, const State& state) const;
+  double later_impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const;
   /// Writes the servo's state at the end of the step.
   void accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const;
 
@@ -43,6 +44,9 @@ class ExplicitMotors {
     double law = 0, off = 0;
     bool operator==(const Input& other) const;
   };
+  /// The scene's function for a set point whose jumps strike; null if there is none.
+  const TimeFunction* striking_set_point(std::size_t actuator, const State& state) const;
+  double impulse_by(std::size_t actuator, const State& state, double from, double to, double smooth) const;
   /// Limit of the motor's effort besides those of its drive.
   double limit(std::size_t actuator) const;
   /// Whether an actuator has a servo that moves its coordinate.
@@ -59,6 +63,7 @@ class ExplicitMotors {
   std::vector<StageDerivatives::Samples> samples_;  // of set points
   std::vector<ServoState> sampled_;                 // of sampled servos, after the sample at the beginning
   std::vector<double> held_;                        // mean output of sampled servos over the step
+  std::vector<double> first_;                       // set points at the beginning, after a jump there
   std::vector<Input> inputs_, kept_inputs_;
 };
 

@@ -316,29 +316,29 @@ bool ExplicitStep::begin_dependent(const State& state, double step, double& work
   return true;
 }
 
-/// Where set points have jumped in the step, changes the rates at its end by the impulses of servos. Returns false if a
-/// loop cannot be closed.
-bool ExplicitStep::strike(const State& state) {
+/// Where set points jump at the beginning of the step (stage 0), or later in it, changes the rates by the impulses of
+/// servos: among these numbers, which are those at the stage. Returns false if a loop cannot be closed.
+bool ExplicitStep::strike(const State& state, std::size_t stage, std::vector<double>& numbers) {
   std::fill(efforts_.begin(), efforts_.end(), 0.0);
   bool jumps = false;
   for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
-    const double impulse = motors_.impulse(i, state, tableau_.weights);
+    const double impulse =
+        stage == 0 ? motors_.first_impulse(i, state) : motors_.later_impulse(i, state, tableau_.weights);
     const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
     efforts_[joints_[coordinate.joint].first_rate + coordinate.component] += impulse;
     jumps = jumps || impulse != 0;
   }
   if (!jumps) return true;
   // Accelerations are affine in efforts, so the change of rates is a difference of two.
-  const std::size_t stages = changes_.size();
   std::fill(before_.begin(), before_.end(), 0.0);
-  if (!place(stages, stage_)) return false;
-  accelerate(stages, before_.data(), changes_[0]);
-  if (!place(stages, stage_)) return false;
-  accelerate(stages, efforts_.data(), last_change_);
+  if (!place(stage, numbers)) return false;
+  accelerate(stage, before_.data(), changes_[0]);
+  if (!place(stage, numbers)) return false;
+  accelerate(stage, efforts_.data(), last_change_);
   for (std::size_t i = 0; i < efforts_.size(); ++i) {
     const double change = last_change_[rates_ + i] - changes_[0][rates_ + i];
-    stage_[work_] += efforts_[i] * (stage_[rates_ + i] + 0.5 * change);
-    stage_[rates_ + i] += change;
+    numbers[work_] += efforts_[i] * (numbers[rates_ + i] + 0.5 * change);
+    numbers[rates_ + i] += change;
   }
   return true;
 }
@@ -358,6 +358,7 @@ StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses)
   motors_.begin(state, step);
   find_inputs(state, step, 0);
   if (dependent_.any() && !begin_dependent(state, step, begin_[work_])) return fail(Reason::DeadPoint);
+  if (!strike(state, 0, begin_)) return fail(Reason::DeadPoint);
   const std::size_t stages = changes_.size();
   if (goes_on && acts_as_before(state))
     changes_[0] = last_change_;
@@ -377,7 +378,7 @@ StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses)
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (!std::all_of(stage_.begin(), stage_.end(), is_finite)) return fail(Reason::NotFinite);
   normalise(stage_);
-  if (!strike(state)) return fail(Reason::DeadPoint);
+  if (!strike(state, stages, stage_)) return fail(Reason::DeadPoint);
   const double work = stage_[work_], dissipated = stage_[work_ + 1];
   if (!evaluate(state, stages, stage_, last_change_)) return fail(Reason::DeadPoint);
   if (dependent_.any() && dependent_.largest_opening(bodies_) > kOpenLoop) return fail(Reason::OpenLoop);

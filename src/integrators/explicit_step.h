@@ -49,7 +49,7 @@ class ExplicitStep {
   void accelerate(std::size_t stage, const double* efforts, std::vector<double>& change);
   bool begin_dependent(const State& state, double step, double& work);
   void find_efforts(const State& state, const std::vector<double>& numbers, std::vector<double>& change);
-  bool strike(const State& state);
+  bool strike(const State& state, std::size_t stage, std::vector<double>& numbers);
   void add_drives(const double* rates, std::vector<double>& change);
   void add_loads(const State& state, std::vector<double>& change);
   void add_load(const NodalLoad& load, double scale, std::vector<double>& change);

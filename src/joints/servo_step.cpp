@@ -15,6 +15,9 @@ constexpr double kStiffRemainder = 0.5;
 /// Tolerance for the times of samples, relative to the step. Times of steps are sums with round-off.
 constexpr double kRoundOff = 1e-6;
 
+/// How far before an end of a step a set point is taken, relative to the step and to the time: far more than round-off.
+constexpr double kBeforeStep = 1e-9, kBeforeTime = 1e-14;
+
 double error_at_begin(const ServoLaw& law, const ServoState& state, const ServoInput& input) {
   return law.mode == ServoMode::Velocity ? state.integral : input.set_point.begin - input.measured.begin;
 }
@@ -67,6 +70,11 @@ double integral_share(const ServoInput& input) {
 }
 
 }  // namespace
+
+double set_point_at_border(const TimeFunction& history, double time, double step) {
+  const double before = time - kBeforeStep * std::abs(step) - kBeforeTime * std::abs(time);
+  return history(time >= 0 ? std::max(before, 0.0) : before);
+}
 
 ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const ServoInput& input) {
   const double h = input.measured.step;
@@ -138,7 +146,10 @@ void advance(const ServoLaw& law, const ServoInput& input, double increment, dou
   if (h == 0) return;
   const double s = set_increment(law, input) - increment;
   state.integral = integral_at_end(law, input, increment, excess, state);
-  if (input.relaxation == 0) return;
+  if (input.relaxation == 0) {  // what strikes in the step has not to be followed later
+    state.delayed_rate -= input.rate_offset + input.rate_slope * increment - input.begin_rate;
+    return;
+  }
   const NumericalDissipation d = numerical_dissipation(2, kStiffRemainder, input.relaxation);
   state.average += d.forgetting * (s - state.average);
   const double mean = (2 * input.relaxation * state.delayed_rate - increment) / (h + 2 * input.relaxation);

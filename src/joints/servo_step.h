@@ -33,6 +33,10 @@ struct SetPoint {
   double acting = 0, acting_rate = 0;  ///< for efforts at the end of the step, see StepForce
 };
 
+/// Returns the set point that a function gives at an end of a step, just before the time [s]. So where it jumps at the
+/// end of a step, all steps agree on which one contains the jump, though their times differ by round-off.
+double set_point_at_border(const TimeFunction& history, double time, double step);
+
 /// What a controller needs to know about a step.
 struct ServoInput {
   double time = 0;          ///< at the beginning [s]
@@ -42,7 +46,9 @@ struct ServoInput {
   double rate_offset = 0, rate_slope = 0;
   SetPoint set_point;
   double feedforward = 0;
-  double relaxation = 0;  ///< time constant of the stabilising terms [s]; 0: none, as for efforts at an instant
+  /// Time constant of the stabilising terms [s]; 0: none, as for efforts at an instant, and in steps in which something
+  /// may strike.
+  double relaxation = 0;
 };
 
 /// The demanded effort over a step as a function of the measured increment: constant + slope increment.

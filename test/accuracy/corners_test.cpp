@@ -70,6 +70,37 @@ TEST(Corners, JumpsOfLoadsAreEndsOfSteps) {
   }
 }
 
+/// Where a set point jumps by J, the derivative of a servo strikes the block with kd J. Then m e'' + kd e' + kp e = 0.
+TEST(Corners, StrikesOfServosTakeNoTime) {
+  const double mass = 2, kp = 250, kd = 20, jump = 0.3;
+  const double decay = kd / (2 * mass), rate = std::sqrt(kp / mass - decay * decay);
+  for (const char* at : {"0.5", "0.3137"}) {  // one is the end of an interval
+    const std::string text =
+        "<robot name='case'><link name='world'/><link name='a'><inertial><mass value='2'/><inertia ixx='1' iyy='1' "
+        "izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='rail' type='prismatic'><parent link='world'/>"
+        "<child link='a'/><axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='0' velocity='9'/></joint><servo "
+        "joint='rail' mode='position' kp='250' kd='20' set_point='t &lt; " +
+        std::string(at) + " ? 0 : 0.3'/><simulation><gravity xyz='0 0 0'/></simulation></robot>";
+    Trajectory truth;
+    for (int i = 0; i <= 10; ++i) {
+      const double t = std::max(0.1 * i - std::stod(at), 0.0);
+      const double left = std::exp(-decay * t) * (std::cos(rate * t) - decay / rate * std::sin(rate * t));
+      truth.emplace_back(0.1 * i < std::stod(at) ? 0 : jump * (1 - left), 0, 0);
+    }
+    for (const char* scheme : {"auto", "em", "em4"}) {
+      scene::SceneDescription scene = read(text);
+      scene.integrator.scheme = scheme;
+      for (const double accuracy : {1e-3, 1e-6}) {
+        const Outcome run = outcome(scene, 1, accuracy, truth);
+        EXPECT_LE(run.error, accuracy) << scheme << " " << at;
+        EXPECT_LE(run.estimate, accuracy);
+        // A smooth motion at this rate needs 4000 steps of em for 1e-6. At first order there would be 3 million.
+        EXPECT_LE(run.steps, 20000) << scheme << " " << at;
+      }
+    }
+  }
+}
+
 /// Closed form of a block that friction brings to rest within a step.
 TEST(Corners, StopsByFrictionAreFound) {
   SceneBuilder b;

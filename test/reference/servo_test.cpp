@@ -76,6 +76,24 @@ Eigen::Vector4d evolved(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& st
   return (vectors * (rates * t).array().exp().matrix().cwiseProduct(parts)).real();
 }
 
+// A set point that jumps by J where a step ends strikes once: after sub-steps, too, whose times differ by round-off.
+// The velocity kd J / m decays with kd / m, so that the block comes to J.
+TEST(Servo, JumpsWhereStepsEndAreNotLost) {
+  const double kd = 40, jump = 0.3;
+  for (const char* scheme : {"em", "em4", "rk4"})
+    for (int k = 10; k < 60; ++k) {
+      SceneBuilder b = block_on_rail();
+      add_servo(b, ServoMode::Position, 1e-12, kd).set_point =
+          TimeFunction::parse("t < " + std::to_string(0.01 * k) + " ? 0 : 0.3");
+      Simulation simulation(b.scene, options(scheme, 0.01, 1e-12));
+      run(simulation, 100);
+      const double left = std::exp(-kd / kBlockMass * (1 - 0.01 * k));
+      // The step of the jump lags by its length or less.
+      EXPECT_NEAR(simulation.position(0), jump * (1 - left), 0.02 * kd / kBlockMass * jump * left + 1e-4)
+          << scheme << " " << k;
+    }
+}
+
 // The servo measures either the motor's or the link's side of an elastic gear. On the link's side, the rotor is between
 // the servo and the controlled coordinate.
 TEST(Servo, OnEitherSideOfAnElasticGear) {
