@@ -8,9 +8,15 @@
 
 namespace flexarm {
 
+/// If an equilibrium is asked for a part of the forces, the tendon is only shortened by that part. A tendon of steel
+/// would otherwise pull with all its stiffness at once.
 FunctionStep Tendon::function_of(const ForceStep& step) const {
-  if (functions().empty()) return {plan_.rest_length, plan_.rest_length, plan_.rest_length};
-  return step.functions[0];
+  FunctionStep out{plan_.rest_length, plan_.rest_length, plan_.rest_length};
+  if (!functions().empty()) out = step.functions[0];
+  if (plan_.has_tension || step.load_factor == 1) return out;
+  for (double* length : {&out.begin, &out.end, &out.mean})
+    *length = length_at_start_ + step.load_factor * (*length - length_at_start_);
+  return out;
 }
 
 std::unique_ptr<ForceWorkspace> Tendon::make_workspace() const {
