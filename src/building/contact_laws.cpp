@@ -20,8 +20,7 @@ ContactLaw law_of_points(const LawRequest& request, double step) {
   const double usual = request.mass * frequency * frequency / request.at_a_time;
   law.stiffness = request.stiffness.value_or(std::min(usual, request.softest));
   law.frequency = std::sqrt(law.stiffness * request.at_a_time / request.mass);
-  law.restitution = request.restitution;
-  law.damping = damping_for_restitution(request.restitution);
+  law.restitution = {request.restitution.values, request.restitution.speeds};
   law.friction = request.friction;
   law.grip = std::min(law.stiffness, kStiffestGrip * request.mass / (step * step) / request.at_a_time);
   return law;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "contact/contact_element.h"
+#include "flexarm/scene/contact_description.h"
 #include "model/model.h"
 
 namespace flexarm {
@@ -19,7 +20,8 @@ struct LawRequest {
   double at_a_time;                      ///< number of points that touch at a time
   std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: such that a hit lasts kContactSteps steps
   double softest = std::numeric_limits<double>::infinity();  ///< bound of a stiffness that is not given [N/m]
-  double restitution = 1, friction = 0;
+  scene::RestitutionDescription restitution = {};
+  double friction = 0;
 };
 /// Law of each point, without a depth. `step`: of the scene [s]. (docs/notes/contact.md 2, 3)
 ContactLaw law_of_points(const LawRequest& request, double step);

@@ -101,6 +101,8 @@ void Mechanism::add_coordinates(const scene::JointDescription& joint, const std:
     coordinate.damping = joint.damping;
     coordinate.friction = joint.friction;
     coordinate.sticks = joint.friction_law.law == scene::FrictionDescription::Law::Coulomb;
+    coordinate.static_ratio = joint.friction_law.static_ratio;
+    coordinate.stribeck_speed = joint.friction_law.stribeck_speed;
     if (kind == JointMapKind::Scalar || kind == JointMapKind::Slide)
       coordinate.friction_coefficient =
           joint.friction_law.coefficient * (model.joints[map].rotation.isZero(0) ? 1.0 : joint.friction_law.radius);

@@ -143,8 +143,9 @@ std::string law_text(const ForceElementList& elements, const TouchingPair& pair)
     least = std::min(least, all.stiffness);
     most = std::max(most, all.stiffness);
   }
-  std::string out = fmt::format("{} points, {} N/m each, restitution {:g}, friction {:g}", all.points,
-                                range_text(least, most), all.restitution, all.friction);
+  std::string out =
+      fmt::format("{} points, {} N/m each, restitution {}, friction {:g}", all.points, range_text(least, most),
+                  range_text(all.restitution, all.restitution_of_fast_hits), all.friction);
   if (all.spinning > 0) out += fmt::format(", spinning {:g} m", all.spinning);
   if (all.rolling > 0) out += fmt::format(", rolling {:g} m", all.rolling);
   return out;

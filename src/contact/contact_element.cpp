@@ -357,7 +357,7 @@ DamperTensions ContactElement::dampers(const State& state, const double*, const 
   for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
     // The damping for slow motions, see contact_push().
     const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
-    slopes[row] = 2 * law_of(station).stiffness * law_.damping / law_.frequency * slope;
+    slopes[row] = 2 * law_of(station).stiffness * law_.restitution.damping_of_slow_hits() / law_.frequency * slope;
     row += each;
   });
   assert(row == rates.size());

@@ -92,10 +92,11 @@ class ContactElement : public ForceElement {
   TouchLaw touch_law() const override {
     return {side_.stations.size() * surface_.shapes.size(),
             law_.stiffness,
-            law_.restitution,
+            law_.restitution.of_slow_hits(),
             law_.friction,
             law_.spinning,
-            law_.rolling};
+            law_.rolling,
+            law_.restitution.of_fast_hits()};
   }
   bool suits_all_schemes() const override { return false; }
 

@@ -48,12 +48,46 @@ double damping_for_restitution(double restitution) {
   assert(restitution >= 0.05 && restitution <= 1);
   if (restitution == 1) return 0;
   const double e = restitution;
-  double low = 1e-9, high = (1 - 1e-15) / e;
+  // Newton's method from the leading terms of the series at e = 1; bisection if an update leaves the bracket.
+  double low = 1e-9, high = (1 - 1e-15) / e, d = std::min(1.5 * (1 - e), high);
   for (int i = 0; i < 100; ++i) {
-    const double d = 0.5 * (low + high);
-    (d * (1 + e) - std::log1p(d) + std::log1p(-e * d) > 0 ? low : high) = d;
+    const double value = d * (1 + e) - std::log1p(d) + std::log1p(-e * d);
+    (value > 0 ? low : high) = d;
+    const double before = d, slope = 1 + e - 1 / (1 + d) - e / (1 - e * d);
+    d -= value / slope;
+    if (!(low < d && d < high)) d = 0.5 * (low + high);
+    if (std::abs(d - before) <= std::numeric_limits<double>::epsilon() * d) break;
   }
-  return low;
+  return d;
+}
+
+Restitution::Restitution(double value) {
+  values_[0] = value;
+  dampings_[0] = damping_for_restitution(value);
+}
+
+Restitution::Restitution(const std::vector<double>& values, const std::vector<double>& speeds) : count_(values.size()) {
+  assert(count_ >= 1 && count_ <= kMost && (count_ == 1 || speeds.size() == count_));
+  for (std::size_t i = 0; i < count_; ++i) {
+    values_[i] = values[i];
+    dampings_[i] = damping_for_restitution(values[i]);
+    if (!speeds.empty()) speeds_[i] = speeds[i];
+  }
+}
+
+double Restitution::at(double speed) const {
+  const auto begin = speeds_.begin(), end = begin + count_;
+  const auto next = static_cast<std::size_t>(std::upper_bound(begin, end, speed) - begin);
+  if (next == 0) return values_[0];
+  if (next == count_) return values_[count_ - 1];
+  const double part = (speed - speeds_[next - 1]) / (speeds_[next] - speeds_[next - 1]);
+  return values_[next - 1] + part * (values_[next] - values_[next - 1]);
+}
+
+double Restitution::damping_at(double speed) const {
+  if (count_ == 1 || speed <= speeds_[0]) return dampings_[0];
+  if (speed >= speeds_[count_ - 1]) return dampings_[count_ - 1];
+  return damping_for_restitution(at(speed));
 }
 
 double contact_energy(const ContactLaw& law, double penetration) {
@@ -71,9 +105,10 @@ ContactPush contact_push(const ContactLaw& law, const ContactChange& change) {
   const Hardened rise = quotient(begin, end);
   const double elastic = k * rise.value * mean, slope = k * (rise.slope * mean + 0.5 * rise.value * x1.slope);
   const double way = change.end - change.begin, stored = k * (x1.value - x0) * mean;
-  if (law.damping == 0) return {elastic, slope, 0};
+  const double damping = law.restitution.damping_at(change.speed);
+  if (damping == 0) return {elastic, slope, 0};
   // Slow contacts are damped like hits with half of the speed that belongs to their penetration.
-  const double bound = 0.5 * law.frequency * mean, alpha = law.damping / std::max(change.speed, bound);
+  const double bound = 0.5 * law.frequency * mean, alpha = damping / std::max(change.speed, bound);
   const double factor = 1 + alpha * way / change.duration;
   if (factor <= 0) return {0, 0, -stored};
   const double alpha_slope = bound > change.speed ? -0.5 * alpha * x1.slope / mean : 0.0;
@@ -84,13 +119,14 @@ ContactPush contact_push(const ContactLaw& law, const ContactChange& change) {
 double push_at(const ContactLaw& law, double penetration, double rate, double speed) {
   const Hardened x = hardened({penetration, law.depth});
   if (x.value == 0) return 0;
-  const double alpha = law.damping / std::max(speed, 0.5 * law.frequency * x.value);
+  const double alpha = law.restitution.damping_at(speed) / std::max(speed, 0.5 * law.frequency * x.value);
   return law.stiffness * x.slope * x.value * std::max(0.0, 1 + alpha * rate);
 }
 
 bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement) {
   const double x0 = hardened({change.begin, law.depth}).value, x1 = hardened({change.end, law.depth}).value;
-  const bool conserves = law.damping == 0 && std::isinf(law.depth);  // for steps of any length
+  const bool conserves =
+      law.restitution.damping_at(change.speed) == 0 && std::isinf(law.depth);  // for steps of any length
   if (conserves || (x0 == 0 && x1 == 0)) return false;
   const double way = change.end - change.begin, end_rate = 2 * way / change.duration - begin_rate;
   const double rise = way == 0 ? 1.0 : std::max((x1 - x0) / way, std::isinf(law.depth) ? 1.0 : 0.0);

@@ -2,18 +2,41 @@
 /// The force law of a contact point over a step: normal force (push), friction, resistance to turning.
 /// (docs/notes/contact.md)
 
+#include <array>
 #include <limits>
+#include <vector>
 
 #include "flexarm/math/pose.h"
 
 namespace flexarm {
 
+/// The coefficient of restitution of hits as a function of the speed of approach: linear between the given speeds,
+/// constant beyond them. With it, the damping d of Hunt and Crossley's law, see damping_for_restitution().
+class Restitution {
+ public:
+  static constexpr std::size_t kMost = 8;
+
+  Restitution() : Restitution(1) {}
+  explicit Restitution(double value);
+  /// `values`: from 0.05 to 1. `speeds`: as many, at most kMost, increasing; empty for one value [m/s].
+  Restitution(const std::vector<double>& values, const std::vector<double>& speeds);
+
+  double at(double speed) const;
+  double damping_at(double speed) const;
+  double of_slow_hits() const { return values_[0]; }
+  double of_fast_hits() const { return values_[count_ - 1]; }
+  double damping_of_slow_hits() const { return dampings_[0]; }
+
+ private:
+  std::size_t count_ = 1;
+  std::array<double, kMost> values_ = {}, speeds_ = {}, dampings_ = {};
+};
+
 /// The parameters of one contact point.
 struct ContactLaw {
   double stiffness = 0;  ///< for small penetrations [N/m]
   double frequency = 0;  ///< of a hit: about sqrt(stiffness / mass that it moves) [rad/s]
-  double restitution = 1;
-  double damping = 0;                                      ///< see damping_for_restitution() [-]
+  Restitution restitution;
   double depth = std::numeric_limits<double>::infinity();  ///< largest possible penetration [m]
   double most_start = 0;             ///< initial penetrations up to this act fully at once; see let_out() [m]
   double friction = 0;               ///< Coulomb's coefficient

@@ -357,7 +357,8 @@ DamperTensions LineContact::dampers(const State& state, const double*, const Eig
   for_each_touching(now, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
     // The damping for slow motions, see contact_push().
     const double rise = hardened({search_.radius_of(pair) - offset.norm(), law_.depth}).slope;
-    slopes[row] = 2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.damping / law_.frequency * rise;
+    slopes[row] = 2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.restitution.damping_of_slow_hits() /
+                  law_.frequency * rise;
     row += each;
   });
   return {slopes.cwiseProduct(rates), slopes.asDiagonal()};

@@ -33,7 +33,13 @@ class LineContact : public ForceElement {
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   /// The law for parallel lines.
   TouchLaw touch_law() const override {
-    return {search_.pairs().size(), law_of(search_.pairs()[0], 0).stiffness, law_.restitution, law_.friction};
+    return {search_.pairs().size(),
+            law_of(search_.pairs()[0], 0).stiffness,
+            law_.restitution.of_slow_hits(),
+            law_.friction,
+            0,
+            0,
+            law_.restitution.of_fast_hits()};
   }
   bool suits_all_schemes() const override { return false; }
 

@@ -114,13 +114,13 @@ double DryFrictionStep::direction(int index) const {
   return along == 0 ? 0.0 : std::copysign(1.0, along * travel_per_carrier(index));
 }
 
-void DryFrictionStep::add_constant(int index, double increment, double& row, Balance& balance) {
-  if (carrier_of_[index] < 0) return;
+PassiveEffort DryFrictionStep::constant_effort(int index, const CoordinateStep& change) {
+  if (carrier_of_[index] < 0) return {};
   const Coordinate& coordinate = model_.coordinates[index];
-  const double effort = direction(index) * coordinate.friction;
-  row += configuration_.effort_weight() * effort;
-  balance.dissipated += effort * increment;
-  capacities_[index] += coordinate.friction;
+  const FrictionRise rise = friction_rise(coordinate, change);
+  const double capacity = rise.value * coordinate.friction, along = direction(index);
+  capacities_[index] += capacity;
+  return {-along * capacity, -along * rise.slope * coordinate.friction, along * capacity * change.increment};
 }
 
 template <class AddDerivative>
@@ -129,15 +129,17 @@ void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left
   const int index = model_.first_coordinate[j];
   const Coordinate& coordinate = model_.coordinates[index];
   const NormalForce normal = normal_force(contact_of(model_.joints[j]), left, g.head<3>());
-  const double capacity = coordinate.friction_coefficient * normal.magnitude;  // in units of the row
-  capacities_[index] = capacity / configuration_.effort_weight();
   const CoordinateStep change = configuration_.coordinate_step(index, configuration_.increment_of(coordinate));
+  const FrictionRise rise = friction_rise(coordinate, change);
+  const double sliding = coordinate.friction_coefficient * normal.magnitude;  // in units of the row
+  capacities_[index] = rise.value * sliding / configuration_.effort_weight();
   const SmoothDirection direction_now =
       coordinate.sticks ? SmoothDirection{direction(index), 0} : smooth_direction(change);
   balance.dissipated += direction_now.value * capacities_[index] * change.increment;
-  const double factor = direction_now.value * coordinate.friction_coefficient;
+  const double factor = direction_now.value * rise.value * coordinate.friction_coefficient;
   left.head<3>() += factor * normal.direction;
-  if (balance.tangent) add_derivative(normal.arm, factor * normal.along, direction_now.slope * capacity);
+  const double slope = direction_now.slope * rise.value + direction_now.value * rise.slope;
+  if (balance.tangent) add_derivative(normal.arm, factor * normal.along, slope * sliding);
 }
 
 bool DryFrictionStep::turns_row(int j) const {

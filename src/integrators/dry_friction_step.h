@@ -18,6 +18,7 @@
 #include "integrators/friction_carrier.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_events.h"
+#include "joints/coordinate_step.h"
 
 namespace flexarm {
 
@@ -31,8 +32,8 @@ class DryFrictionStep {
   void stick_as(const DryFrictionStep& other);
   /// To be called in each evaluation before joints add their friction.
   void begin_evaluation();
-  /// Adds friction of constant capacity to the row of a coordinate whose increment over the step is `increment`.
-  void add_constant(int coordinate, double increment, double& row, Balance& balance);
+  /// Returns the friction that does not depend on the force on the joint, of a coordinate with set-valued friction.
+  PassiveEffort constant_effort(int coordinate, const CoordinateStep& change);
   /// Changes a joint's row or maps by the friction due to the force on the joint. `g`: residual of the slave.
   void add_normal(int joint, const Vector6& g, FoldMaps& maps, Balance& balance);
   void add_normal(int joint, const Vector6& g, SlideMaps& maps, Balance& balance);

@@ -47,12 +47,12 @@ void JointFold::add_resistance(int j, Balance& balance) {
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
-    const PassiveEffort passive =
-        passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
-    balance.dissipated += passive.dissipated;
-    residual[k] -= weight * passive.effort;
-    friction_.add_constant(static_cast<int>(index), change[k], residual[k], balance);
-    const double slope = weight * passive.slope;
+    const CoordinateStep moved = configuration_.coordinate_step(index, change[k]);
+    const PassiveEffort passive = passive_effort(coordinate, stops_[index], moved);
+    const PassiveEffort friction = friction_.constant_effort(static_cast<int>(index), moved);
+    balance.dissipated += passive.dissipated + friction.dissipated;
+    residual[k] -= weight * (passive.effort + friction.effort);
+    const double slope = weight * (passive.slope + friction.slope);
     if (!balance.tangent || slope == 0) continue;
     Eigen::Map<ReleasedSquare> tangent(balance.tangent->diagonal_block(variable), count, count);
     if (coordinate.is_angle) {  // the increment's variation is S^{-1} spin

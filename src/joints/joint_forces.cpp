@@ -10,6 +10,13 @@ SmoothDirection smooth_direction(const CoordinateStep& change) {
   return {t, (1 - t * t) / kFrictionSpeed * rate_slope(change)};
 }
 
+FrictionRise friction_rise(const Coordinate& coordinate, const CoordinateStep& change) {
+  if (coordinate.static_ratio == 1 || change.step == 0) return {};
+  const double x = rate_of(change) / coordinate.stribeck_speed;
+  const double rise = (coordinate.static_ratio - 1) * std::exp(-x * x);
+  return {1 + rise, -2 * x * rise / coordinate.stribeck_speed * rate_slope(change)};
+}
+
 bool is_coarse_turn(double begin_rate, double end_rate, double refinement) {
   constexpr double kLargestTurn = 0.5;
   return refinement * std::abs(std::tanh(end_rate / kFrictionSpeed) - std::tanh(begin_rate / kFrictionSpeed)) >
@@ -21,8 +28,10 @@ PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& pe
   const double friction = coordinate.sticks ? 0 : coordinate.friction;
   if (change.step != 0 && (coordinate.damping > 0 || friction > 0)) {
     const SmoothDirection direction = smooth_direction(change);
-    out.effort = -coordinate.damping * rate_of(change) - friction * direction.value;
-    out.slope = -(coordinate.damping * rate_slope(change) + friction * direction.slope);
+    const FrictionRise rise = friction_rise(coordinate, change);
+    out.effort = -coordinate.damping * rate_of(change) - friction * rise.value * direction.value;
+    out.slope = -(coordinate.damping * rate_slope(change) +
+                  friction * (rise.value * direction.slope + rise.slope * direction.value));
     out.dissipated = -out.effort * change.increment;
   }
   if (coordinate.limit) {

@@ -14,6 +14,12 @@ constexpr double kFrictionSpeed = 1e-3;
 struct SmoothDirection {
   double value = 0, slope = 0;  ///< `slope`: derivative with respect to the increment
 };
+/// The capacity of a coordinate's friction at the rate of a step, relative to that of fast sliding (Stribeck's curve),
+/// and its derivative with respect to the increment. It is 1 in statics. (docs/theory/joints.md)
+struct FrictionRise {
+  double value = 1, slope = 0;
+};
+FrictionRise friction_rise(const Coordinate& coordinate, const CoordinateStep& change);
 /// Returns the smooth friction per capacity; zero in statics.
 SmoothDirection smooth_direction(const CoordinateStep& change);
 /// Whether smooth friction per capacity changes by more than 1 / (2 refinement) between these rates.

@@ -141,6 +141,7 @@ struct TouchLaw {
   std::size_t points = 0;                                           ///< 0: the element is no contact
   double stiffness = 0;                                             ///< of shallow penetrations [N/m]
   double restitution = 1, friction = 0, spinning = 0, rolling = 0;  ///< the last two: couple per normal force [m]
+  double restitution_of_fast_hits = restitution;                    ///< `restitution` is that of slow hits
 };
 
 /// Poses and velocities of all nodes for output.

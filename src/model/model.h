@@ -69,6 +69,8 @@ struct Coordinate {
   double damping = 0, friction = 0;
   bool sticks = false;              ///< set-valued Coulomb law; else smooth
   double friction_coefficient = 0;  ///< friction per normal force in the joint; times a radius for an angle
+  double static_ratio = 1;          ///< friction at rest, relative to that of fast sliding; see FrictionDescription
+  double stribeck_speed = 1;        ///< [rad/s or m/s]
   double effort_limit = 0;          ///< 0: none
   std::optional<LimitStop> limit;
   int motion = -1;    ///< history index of a prescribed position; -1: free

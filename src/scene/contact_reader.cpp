@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <stdexcept>
@@ -36,16 +37,39 @@ GroundDescription read_ground(const XmlElement& ground) {
   return out;
 }
 
+RestitutionDescription read_restitution(const XmlElement& element) {
+  RestitutionDescription out;
+  if (!element.has("speeds")) {
+    if (element.has("restitution")) out.values = {element.number("restitution", kRestitution).value_or(1)};
+    return out;
+  }
+  constexpr std::size_t kMost = RestitutionDescription::kMostSpeeds;
+  const std::optional<std::vector<double>> speeds = element.all_numbers("speeds", kMost);
+  const std::optional<std::vector<double>> values = element.all_numbers("restitution", kMost);
+  if (!speeds || !values) return out;
+  const auto is_lower = [](double one, double other) { return one < other; };
+  if (speeds->front() < 0 || std::adjacent_find(speeds->begin(), speeds->end(), std::not_fn(is_lower)) != speeds->end())
+    element.attribute_error("speeds", "speeds must be >= 0 and increase");
+  else if (values->size() != speeds->size())
+    element.attribute_error("restitution",
+                            fmt::format("there must be as many restitutions as speeds, {}", speeds->size()));
+  else if (!std::all_of(values->begin(), values->end(), kRestitution.holds))
+    element.attribute_error("restitution", fmt::format("each restitution must be {}", kRestitution.text));
+  else
+    out = {*values, *speeds};
+  return out;
+}
+
 bool is_contact(const XmlElement& element) {
   return element.tag() == "contact" && (element.has("first") || element.has("second"));
 }
 
 ContactDescription read_contact(const XmlElement& contact) {
-  contact.expect_only({"first", "second", "stiffness", "restitution", "friction", "spinning", "rolling"});
+  contact.expect_only({"first", "second", "stiffness", "restitution", "speeds", "friction", "spinning", "rolling"});
   ContactDescription out;
   static_cast<ContactPair&>(out) = read_pair(contact);
   if (contact.has("stiffness")) out.stiffness = contact.number("stiffness", kPositive);
-  if (contact.has("restitution")) out.restitution = contact.number("restitution", kRestitution).value_or(1);
+  out.restitution = read_restitution(contact);
   if (contact.has("friction")) out.friction = contact.number("friction", kNonNegative);
   out.spinning = contact.number("spinning", kNonNegative, 0);
   out.rolling = contact.number("rolling", kNonNegative, 0);

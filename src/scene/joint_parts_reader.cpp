@@ -156,6 +156,8 @@ namespace {
 constexpr Choice<FrictionDescription::Law> kLaws[] = {{"smooth", FrictionDescription::Law::Smooth},
                                                       {"coulomb", FrictionDescription::Law::Coulomb}};
 
+constexpr NumberRange kAtLeastOne{">= 1", [](double x) { return x >= 1; }};
+
 /// Whether a joint needs the radius at which the friction of its rotation acts.
 enum class Radius { Needed, Optional, Useless };
 Radius radius_of(const JointDescription& joint) {
@@ -183,11 +185,15 @@ void check_radius(const XmlElement& friction, double coefficient, Radius radius)
 }  // namespace
 
 void read_friction(const XmlElement& friction, JointDescription& description) {
-  friction.expect_only({"law", "coefficient", "radius"});
+  friction.expect_only({"law", "coefficient", "radius", "static", "stribeck"});
   FrictionDescription out;
   out.law = read_choice(friction, "law", kLaws, out.law);
   out.coefficient = friction.number("coefficient", kNonNegative, 0);
   out.radius = friction.has("radius") ? friction.number("radius", kPositive).value_or(0) : 0;
+  out.static_ratio = friction.number("static", kAtLeastOne, out.static_ratio);
+  out.stribeck_speed = friction.number("stribeck", kPositive, out.stribeck_speed);
+  if (friction.has("stribeck") && !friction.has("static"))
+    friction.attribute_error("stribeck", "friction falls with the speed only if there is more at rest, static > 1");
   if (friction.has("coefficient") && !has_normal_force(description.kind))
     friction.attribute_error(
         "coefficient",

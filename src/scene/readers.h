@@ -91,6 +91,8 @@ Sensor read_sensor(const XmlElement& sensor);
 void connect_tendon_sensors(SceneDescription& scene, Findings& findings);
 
 GroundDescription read_ground(const XmlElement& ground);
+/// Reads the attributes `restitution` and `speeds` of a contact.
+RestitutionDescription read_restitution(const XmlElement& element);
 /// Whether a child of <robot> is flexarm's <contact>. A <contact> of other programs has neither `first` nor `second`.
 bool is_contact(const XmlElement& element);
 ContactDescription read_contact(const XmlElement& contact);

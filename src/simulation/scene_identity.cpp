@@ -170,7 +170,9 @@ class SceneParts {
     add_given("restitution", restitution);
   }
   void add(const scene::FrictionDescription& friction) {
-    all("law", friction.law, "coefficient", friction.coefficient, "radius", friction.radius);
+    const auto& [law, coefficient, radius, static_ratio, stribeck_speed] = friction;
+    all("law", law, "coefficient", coefficient, "radius", radius);
+    if (static_ratio != 1) all("static", static_ratio, "stribeck", stribeck_speed);
   }
   void add(const scene::JointDescription& joint) {
     const auto& [name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, profile, slide, limits,
@@ -245,6 +247,13 @@ class SceneParts {
     all("name", ground.name, "normal", ground.normal, "offset", ground.offset);
   }
   void add(const scene::ContactPair& pair) { all("first", pair.first, "second", pair.second); }
+  void add(const scene::RestitutionDescription& restitution) {
+    const auto& [values, speeds] = restitution;
+    if (speeds.empty())
+      add(values.front());
+    else
+      all("values", values, "speeds", speeds);
+  }
   void add(const scene::ContactDescription& contact) {
     all("first", contact.first, "second", contact.second, "stiffness", contact.stiffness, "restitution",
         contact.restitution, "friction", contact.friction, "spinning", contact.spinning, "rolling", contact.rolling);

@@ -13,8 +13,14 @@ ContactLaw law_with(double restitution, double depth = std::numeric_limits<doubl
   ContactLaw law;
   law.stiffness = 7;
   law.frequency = 2;
-  law.damping = damping_for_restitution(restitution);
+  law.restitution = Restitution(restitution);
   law.depth = depth;
+  return law;
+}
+/// A law whose restitution falls with the speed from 0.2 m/s to 1.6 m/s.
+ContactLaw falling_law(double depth = std::numeric_limits<double>::infinity()) {
+  ContactLaw law = law_with(1, depth);
+  law.restitution = Restitution({0.9, 0.5, 0.4}, {0.2, 0.8, 1.6});
   return law;
 }
 
@@ -28,7 +34,7 @@ std::vector<Case> random_cases() {
   std::vector<Case> out;
   for (int i = 0; i < 3000; ++i) {
     const double depth = i % 2 == 0 ? 0.7 : std::numeric_limits<double>::infinity();
-    const ContactLaw law = law_with(i % 5 == 0 ? 1.0 : part(generator), depth);
+    const ContactLaw law = i % 7 == 0 ? falling_law(depth) : law_with(i % 5 == 0 ? 1.0 : part(generator), depth);
     out.push_back({law, {place(generator), place(generator), 0.3, speed(generator)}});
   }
   return out;
@@ -56,7 +62,7 @@ TEST(ContactPush, DoesTheWorkOfItsEnergyAndDissipates) {
     const double size = contact_energy(law, change.end) + contact_energy(law, change.begin);
     EXPECT_GE(push.value, 0);
     EXPECT_GE(push.dissipated, -1e-15 * size);
-    if (law.damping == 0) {
+    if (law.restitution.of_slow_hits() == 1) {
       EXPECT_EQ(push.dissipated, 0);
     }
     EXPECT_NEAR(push.value * (change.end - change.begin), stored + push.dissipated, 1e-13 * (size + push.dissipated));
@@ -80,11 +86,12 @@ TEST(ContactPush, AtAnInstantIsTheMeanOfAShortStep) {
   for (const double depth : {0.7, std::numeric_limits<double>::infinity()})
     for (const double rate : {-0.05, 0.2})
       for (const double speed : {0.0, 0.4}) {
-        const ContactLaw law = law_with(0.5, depth);
         const double p = 0.3, h = 1e-4;
         const ContactChange change{p - 0.5 * h * rate, p + 0.5 * h * rate, h, speed};
-        const double mean = contact_push(law, change).value;
-        EXPECT_NEAR(push_at(law, p, rate, speed), mean, 1e-8 * mean);
+        for (const ContactLaw& law : {law_with(0.5, depth), falling_law(depth)}) {
+          const double mean = contact_push(law, change).value;
+          EXPECT_NEAR(push_at(law, p, rate, speed), mean, 1e-8 * mean);
+        }
       }
   EXPECT_EQ(push_at(law_with(0.5), -0.1, 1, 1), 0);
   EXPECT_EQ(push_at(law_with(0.5), 0.1, -10, 1), 0) << "it never pulls";
@@ -123,6 +130,25 @@ TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
     for (const double mass : {1.0, 7.0 / 4, 5.0})
       for (const double speed : {0.01, 1.0})
         EXPECT_NEAR(restitution_of(law_with(e, speed == 1.0 ? 2.0 : 0.02), mass, speed), e, 0.005) << mass << speed;
+}
+
+TEST(ContactPush, GivesBackWhatItsRestitutionSaysAtEachSpeed) {
+  for (const double mass : {1.0, 7.0 / 4})
+    for (const auto& [speed, e] : {std::pair{0.01, 0.9}, {0.2, 0.9}, {0.5, 0.7}, {0.8, 0.5}, {1.2, 0.45}, {3.0, 0.4}})
+      EXPECT_NEAR(restitution_of(falling_law(9), mass, speed), e, 0.005) << mass << ' ' << speed;
+}
+
+TEST(Restitution, IsLinearBetweenItsSpeedsAndConstantBeyond) {
+  const Restitution falling({0.9, 0.5, 0.4}, {0.2, 0.8, 1.6});
+  for (const auto& [speed, e] :
+       {std::pair{0.0, 0.9}, {0.2, 0.9}, {0.35, 0.8}, {0.8, 0.5}, {1.2, 0.45}, {1.6, 0.4}, {7.0, 0.4}}) {
+    EXPECT_NEAR(falling.at(speed), e, 1e-15);
+    EXPECT_NEAR(falling.damping_at(speed), damping_for_restitution(e), 1e-14) << speed;
+  }
+  EXPECT_EQ(falling.of_slow_hits(), 0.9);
+  EXPECT_EQ(falling.of_fast_hits(), 0.4);
+  EXPECT_EQ(Restitution(0.3).at(5), 0.3);
+  EXPECT_EQ(Restitution().damping_at(1), 0) << "elastic";
 }
 
 // If a point reverses and penetrates again before it has left, the law uses the speed of the new approach instead of

@@ -18,6 +18,8 @@ class FrictionTangent : public SchemeStep {
     for (Coordinate& coordinate : model.coordinates) {
       coordinate.sticks = sticks;
       coordinate.friction_coefficient = coordinate.is_angle ? 0 : 0.4;
+      coordinate.static_ratio = 1.7;
+      coordinate.stribeck_speed = 0.8;
     }
     return model;
   }

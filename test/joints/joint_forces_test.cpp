@@ -38,6 +38,29 @@ TEST(PassiveEffort, DampingAndFriction) {
     }
 }
 
+// Friction falls from its value at rest to that of fast sliding.
+TEST(PassiveEffort, StribecksCurve) {
+  Coordinate coordinate;
+  coordinate.friction = 1.3;
+  coordinate.static_ratio = 1.5;
+  coordinate.stribeck_speed = 0.02;
+  const double h = 0.01;
+  for (const double rate : {-1.0, -0.03, -0.01, 0.0, 4e-3, 0.02, 0.5})
+    for (const double gamma : {1.0, 0.6}) {
+      CoordinateStep change = step_between(0.2, 0.2 + rate * h, h);
+      change.increment = rate * h;
+      change.gamma = gamma;
+      change.begin_rate = gamma == 1.0 ? 123.0 : rate;
+      const double rise = 1 + 0.5 * std::exp(-rate * rate / 4e-4);
+      EXPECT_NEAR(friction_rise(coordinate, change).value, rise, 1e-13);
+      const PassiveEffort effort = passive_effort(coordinate, {}, change);
+      EXPECT_NEAR(effort.effort, -1.3 * rise * std::tanh(rate / kFrictionSpeed), 1e-12);
+      EXPECT_GE(effort.dissipated, 0);
+      const double scale = kFrictionSpeed * h * gamma;
+      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, {}, change, scale), 1e-9 / scale);
+    }
+}
+
 TEST(PassiveEffort, NoneInStatics) {
   const StopPenalty penalty;
   Coordinate coordinate;

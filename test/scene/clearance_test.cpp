@@ -28,13 +28,13 @@ TEST(Clearances, OfTheTreeAreFloatingJoints) {
   EXPECT_EQ(pin.length, 0.1);
   EXPECT_EQ(pin.journal, 0.02);
   EXPECT_EQ(pin.stiffness, 1e6);
-  EXPECT_EQ(pin.restitution, 0.5);
+  EXPECT_EQ(pin.restitution.values, std::vector<double>{0.5});
   EXPECT_EQ(pin.friction, 0.1);
   EXPECT_EQ(pin.location.line, 5);
   const ClearanceDescription& ball = scene.clearances[1];
   EXPECT_EQ(ball.joint.kind, JointKind::Spherical);
   EXPECT_FALSE(ball.length || ball.width || ball.stiffness);
-  EXPECT_EQ(ball.restitution, 0.3);
+  EXPECT_EQ(ball.restitution.values, std::vector<double>{0.3});
 }
 
 TEST(Clearances, OfLoopsAddNoJoint) {

@@ -91,6 +91,18 @@ TEST(GoodScene, Friction) {
   EXPECT_EQ(coulomb.radius, 0.01);
   EXPECT_EQ(friction_of_shoulder("<friction/>").law, FrictionDescription::Law::Smooth);
   EXPECT_EQ(friction_of_shoulder(R"(<friction law="coulomb"/>)").coefficient, 0);
+  EXPECT_EQ(friction_of_shoulder(R"(<friction law="coulomb"/>)").static_ratio, 1);
+  EXPECT_EQ(friction_of_shoulder(R"(<friction static="1.5"/>)").stribeck_speed, 0.01);
+  const FrictionDescription falling = friction_of_shoulder(R"(<friction static="1.4" stribeck="0.05"/>)");
+  EXPECT_EQ(falling.static_ratio, 1.4);
+  EXPECT_EQ(falling.stribeck_speed, 0.05);
+}
+
+TEST(GoodScene, RestitutionBySpeed) {
+  const SceneDescription scene =
+      read(good_scene_with("restitution=\"0.4\"", "restitution=\"0.9 0.6\" speeds=\"0 2\"")).scene.value();
+  EXPECT_EQ(scene.contacts[0].restitution.values, (std::vector<double>{0.9, 0.6}));
+  EXPECT_EQ(scene.contacts[0].restitution.speeds, (std::vector<double>{0, 2}));
 }
 
 TEST(GoodScene, RigidLink) {
@@ -301,7 +313,8 @@ TEST(GoodScene, Contacts) {
   ASSERT_EQ(scene.contacts.size(), 1u);
   EXPECT_EQ(scene.contacts[0].first, "*");
   EXPECT_EQ(scene.contacts[0].second, "floor");
-  EXPECT_EQ(scene.contacts[0].restitution, 0.4);
+  EXPECT_EQ(scene.contacts[0].restitution.values, std::vector<double>{0.4});
+  EXPECT_TRUE(scene.contacts[0].restitution.speeds.empty());
   EXPECT_EQ(scene.contacts[0].friction, 0.25);
   EXPECT_EQ(scene.contacts[0].stiffness, 1e4);
   ASSERT_EQ(scene.no_contacts.size(), 1u);

@@ -124,7 +124,8 @@ TEST(JointErrors, Friction) {
   expect_friction_error(R"(<friction coefficient="0.1"/>)", "needs the radius of the bearing, radius > 0");
   expect_friction_error(R"(<friction coefficient="0.1" radius="0"/>)", "radius must be > 0, got '0'");
   expect_friction_error(R"(<friction radius="0.1"/>)", "it acts with a coefficient only");
-  expect_friction_error(R"(<friction mu="0.1"/>)", "unknown attribute, expected law, coefficient, radius, got 'mu'");
+  expect_friction_error(R"(<friction mu="0.1"/>)",
+                        "unknown attribute, expected law, coefficient, radius, static, stribeck, got 'mu'");
   expect_friction_error(R"(<friction/><friction law="coulomb"/>)", "at most one <friction>");
   expect_error(R"(<mimic joint="shoulder")", R"(<friction coefficient="1" radius="1"/><mimic joint="shoulder")", 50,
                "nothing turns about an axis here");

@@ -316,7 +316,7 @@ TEST(Spawn, ANewBallFallsOnTheGroundAndIsTaken) {
   b.scene.grounds.push_back(ground);
   scene::ContactDescription all;
   all.first = all.second = scene::kAllBodies;
-  all.restitution = 0.05;
+  all.restitution.values = {0.05};
   b.scene.contacts.push_back(all);
   Simulation s(b.scene);
   advance(s, 5);

@@ -10,7 +10,7 @@ inline ContactLaw gripping_law(double friction, double restitution, double depth
   ContactLaw law;
   law.stiffness = 500;
   law.frequency = 20;
-  law.damping = damping_for_restitution(restitution);
+  law.restitution = Restitution(restitution);
   law.depth = depth;
   law.friction = friction;
   law.grip = 400;

@@ -8,19 +8,30 @@ from flexarm import Simulation
 from flexarm.validation import Row
 from flexarm.validation.fits import fit_numbers
 
-FITTED = 1  # the trial from whose first bounces the restitution is identified
+FITTED = 1, 2, 4  # the trials from which the restitution is identified: the first three
 NUMBERS = {"fourth_s": 4, "seventh_s": 7, "thirteenth_s": 13}  # of the bounces
 FRAME = 1 / 60  # s
+GRAVITY, FAST = 9.81, 2.5  # m/s^2; speed of the scene's second restitution [m/s]
 HIT = 0.002  # duration of a hit: ten steps of the scene [s]
 # Bounces fall between frames: that of the first interval scales all later times.
 FIRST = FRAME / math.sqrt(6)  # standard deviation of an interval [s]
 
 
+def ideal(restitution, first_interval):
+    """Times of the second to thirteenth bounce if hits take no time, by recursion [s]. restitution: at 0, at FAST."""
+    slow, fast = restitution
+    speed, times = GRAVITY * first_interval / 2, []
+    for _ in range(12):
+        times.append(2 * speed / GRAVITY)
+        speed *= slow + (fast - slow) * min(speed / FAST, 1)
+    return numpy.cumsum(times)
+
+
 def bounces(case, restitution, first_interval):
     """Times of the bounces after the start, which is the first one [s]."""
-    speed = 9.81 * first_interval / 2
-    simulation = Simulation(case.scene("ball.urdf", {"restitution": restitution, "speed": speed}))
-    until = 1.1 * first_interval * (1 - restitution ** 13) / (1 - restitution)
+    values = {"slow": restitution[0], "fast": restitution[1], "speed": GRAVITY * first_interval / 2}
+    simulation = Simulation(case.scene("ball.urdf", values))
+    until = 1.1 * ideal(restitution, first_interval)[-1]
     record = ["joint/flight/position", "joint/flight/velocity"]
     rows = simulation.run(round(until / simulation.step_size), record=record)
     time, velocity = rows[:, 0], rows[:, 2]
@@ -28,23 +39,35 @@ def bounces(case, restitution, first_interval):
     return time[at] - velocity[at] * (time[at + 1] - time[at]) / (velocity[at + 1] - velocity[at])
 
 
+def uncertainty(row, key):
+    """Of the time of a bounce, with that of the first interval, from which it is predicted [s]."""
+    return math.hypot(FRAME, 2 * FIRST * row[key] / row["second_s"])
+
+
 def compare(case):
     rows = case.table("numbers.csv")
-    used = next(row for row in rows if row["trial"] == FITTED)
-    (restitution,), (error,) = fit_numbers(
-        lambda x: [bounces(case, x[0], used["second_s"])[2]], [0.88], [used["fourth_s"]], [FRAME / math.sqrt(6)])
-    case.identify("restitution", restitution, "", "the first four bounces of trial %d" % FITTED, error)
-    ideal = used["second_s"] * (1 - restitution ** 12) / (1 - restitution)
-    yield Row("trial %d, bounce 13, closed form" % FITTED, ideal, bounces(case, restitution, used["second_s"])[11],
-              12 * HIT, "s", "closed form", "twelve hits that last ten steps each")
+    used = [row for row in rows if row["trial"] in FITTED]
+
+    def predicted(restitution):
+        found = [bounces(case, restitution, row["second_s"]) for row in used]
+        return [each[number - 2] for each in found for number in NUMBERS.values()]
+
+    restitution, errors = fit_numbers(predicted, [0.95, 0.87], [row[key] for row in used for key in NUMBERS],
+                                      [uncertainty(row, key) for row in used for key in NUMBERS])
+    source = "trials %d, %d and %d" % FITTED
+    case.identify("restitution of slow hits", restitution[0], "", source, errors[0])
+    case.identify("restitution at %g m/s" % FAST, restitution[1], "", source, errors[1])
+    first = used[0]["second_s"]
+    yield Row("trial %d, bounce 13, recursion" % FITTED[0], ideal(restitution, first)[-1],
+              bounces(case, restitution, first)[11], 12 * HIT, "s", "closed form",
+              "twelve hits that last ten steps each")
     found = {}
     for row in rows:
         found[row["trial"]] = times = bounces(case, restitution, row["second_s"])
         for key, number in NUMBERS.items():
-            spread = FIRST * row[key] / row["second_s"]
             yield Row("trial %d: bounce %d" % (row["trial"], number), row[key], times[number - 2],
-                      math.hypot(FRAME, 2 * spread), "s", note="a frame; twice the spread of the first interval",
-                      is_fitted=row["trial"] == FITTED and number == 4, group="time of bounce %d" % number)
+                      uncertainty(row, key), "s", note="a frame; twice the spread of the first interval",
+                      is_fitted=row["trial"] in FITTED, group="time of bounce %d" % number)
     case.draw(lambda axes: draw(axes, rows, found))
 
 

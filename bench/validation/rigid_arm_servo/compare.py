@@ -10,7 +10,7 @@ FITTED = "rigidarm_K1_9", 1  # the step from which numbers are identified
 # The two steps of a record, there and back, differ by 0.03 rad (one by 0.05) in the size of the last angle, where
 # friction holds the arm, and by up to 34 ms in time.
 ANGLE, TIME = 0.03, 0.034  # rad; s
-DELAYS = 0.015, 0.02, 0.025, 0.03, 0.035, 0.04  # that are tried [s]
+DELAYS = 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05  # that are tried [s]
 HUB = "joint/hub/position"
 
 

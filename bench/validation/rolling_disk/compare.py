@@ -16,16 +16,16 @@ REPEAT, SLOPE = 0.09, 0.01  # s; relative
 USED = 0.5, 15.0  # angles of a record that count, as in the course [rad]
 
 
-def roll(case, extra, friction):
+def roll(case, extra, rolling):
     """Times [s], angles [rad] and rates [rad/s] from rest."""
     # An unbalanced wheel starts with its mass at the top, where it would stay without a push.
-    values = {"extra": extra, "friction": friction, "angle": 1e-3 if extra else 0.0, "rate": 0.02 if extra else 0.0}
+    values = {"extra": extra, "rolling": rolling, "angle": 1e-3 if extra else 0.0, "rate": 0.02 if extra else 0.0}
     rows = Simulation(case.scene("disk.urdf", values)).run(1600, record=[ANGLE, RATE])
     return rows.T
 
 
-def duration(case, row, friction):
-    times, angles, _ = roll(case, row["extra_kg"], friction)
+def duration(case, row, rolling):
+    times, angles, _ = roll(case, row["extra_kg"], rolling)
     first, second = numpy.interp([row["first_rad"], row["second_rad"]], angles, times)
     return second - first
 
@@ -37,19 +37,19 @@ def uncertainty(row):
 def compare(case):
     rows = case.table("numbers.csv")
     used = [row for row in rows if row["record"] == FITTED]
-    (friction,), (error,) = fit_numbers(lambda x: [duration(case, row, x[0]) for row in used], [0.8],
+    (rolling,), (error,) = fit_numbers(lambda x: [duration(case, row, x[0]) for row in used], [0.007],
                                         [row["time_s"] for row in used], [uncertainty(row) for row in used])
-    case.identify("moment of friction", friction, "N m", "the times of %s" % FITTED, error)
+    case.identify("lever arm of rolling friction", 1e3 * rolling, "mm", "the times of %s" % FITTED, 1e3 * error)
     for row in rows:
         yield Row("%s: %g to %g rad" % (row["record"], row["first_rad"], row["second_rad"]), row["time_s"],
-                  duration(case, row, friction), uncertainty(row), "s", note="repeats, 0.1 deg of the ramp",
+                  duration(case, row, rolling), uncertainty(row), "s", note="repeats, 0.1 deg of the ramp",
                   is_fitted=row["record"] == FITTED, group=row["record"].rstrip("_12"))
-    case.draw(lambda axes: draw(case, axes, friction), columns=2)
+    case.draw(lambda axes: draw(case, axes, rolling), columns=2)
     record = read(case, FITTED)
-    values, errors = fit_run(case.path("disk.urdf"), {"friction": 0.8, "rate": 1.0}, record[0] - record[0][0],
+    values, errors = fit_run(case.path("disk.urdf"), {"rolling": 0.007, "rate": 1.0}, record[0] - record[0][0],
                              {ANGLE: record[1]}, {"angle": record[1][0]}, step=0.005)
-    case.identify("moment of friction, by `flexarm identify`'s search", values["friction"], "N m",
-                  "all angles of %s" % FITTED, errors["friction"])
+    case.identify("lever arm of rolling friction, by `flexarm identify`'s search", 1e3 * values["rolling"], "mm",
+                  "all angles of %s" % FITTED, 1e3 * errors["rolling"])
 
 
 def read(case, name):
@@ -59,7 +59,7 @@ def read(case, name):
     return table[numpy.argmax(table[:, 1] > USED[0]):stop].T
 
 
-def draw(case, axes, friction):
+def draw(case, axes, rolling):
     for each, kind, extra in ((axes[0], "balanced", 0.0), (axes[1], "unbalanced", 3.4)):
         for number, colour in ((1, "#D55E00"), (2, "#0072B2")):
             try:
@@ -67,7 +67,7 @@ def draw(case, axes, friction):
             except MissingRecord:
                 continue
             each.plot(angles, rates, "o", markersize=3, color=colour, label="measured, %d" % number)
-        _, angles, rates = roll(case, extra, friction)
+        _, angles, rates = roll(case, extra, rolling)
         seen = angles < USED[1]
         each.plot(angles[seen], rates[seen], color="black", label="flexarm")
         each.set(title=kind, xlabel="angle of the wheel [rad]", ylabel="angular velocity [rad/s]")

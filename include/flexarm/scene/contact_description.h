@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flexarm/math/pose.h"
 #include "flexarm/scene/source_location.h"
@@ -17,6 +18,14 @@ struct GroundDescription {
   SourceLocation location = {};
 };
 
+/// Coefficient of restitution, from 0.05 to 1: one value, or values at increasing speeds of approach [m/s]. Between
+/// these speeds it is linear, beyond them constant.
+struct RestitutionDescription {
+  static constexpr std::size_t kMostSpeeds = 8;
+  std::vector<double> values = {0.3};
+  std::vector<double> speeds = {};  ///< as many as values; empty for one value
+};
+
 /// In a contact pair: all links and grounds. Contacts between neighbours are excluded.
 constexpr const char* kAllBodies = "*";
 
@@ -28,8 +37,8 @@ struct ContactPair {
 };
 struct ContactDescription : ContactPair {
   std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: from the moved masses and the step
-  double restitution = 0.3;              ///< coefficient, from 0.05 to 1
-  std::optional<double> friction = {};   ///< Coulomb coefficient; empty: from the surfaces of the links, else 0
+  RestitutionDescription restitution = {};
+  std::optional<double> friction = {};  ///< Coulomb coefficient; empty: from the surfaces of the links, else 0
   /// Torsional and rolling friction: the resisting moment about the normal, and across it, is at most this length times
   /// the normal force of each point [m].
   double spinning = 0, rolling = 0;

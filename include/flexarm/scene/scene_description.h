@@ -108,8 +108,8 @@ struct SlideDescription {
   SourceLocation location = {};
 };
 
-/// Dry friction of a joint's coordinates that depends on the joint's force. It acts in addition to the constant
-/// friction effort of <dynamics friction>.
+/// Dry friction of a joint's coordinates: how it depends on the rate, and a part that depends on the joint's force,
+/// which acts in addition to the constant friction effort of <dynamics friction>.
 struct FrictionDescription {
   enum class Law {
     Smooth,  ///< F tanh(rate / v)
@@ -118,6 +118,9 @@ struct FrictionDescription {
   Law law = Law::Smooth;
   double coefficient = 0;  ///< relative to the force normal to the travel, or across the axis [-]
   double radius = 0;       ///< of the bearing: lever arm of the friction force of rotations [m]
+  /// Friction at rest, relative to that of fast sliding. In between it falls as exp(-(rate / stribeck_speed)^2).
+  double static_ratio = 1;
+  double stribeck_speed = 0.01;  ///< [rad/s or m/s]
 };
 
 struct JointDescription {
@@ -173,9 +176,9 @@ struct ClearanceDescription {
   std::optional<double> width = {};      ///< of the block's square section [m]; empty: `length`
   double journal = 0;                    ///< radius of the pin or ball [m]; required with friction
   std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: from the moved masses and the step
-  double restitution = 0.3;              ///< coefficient, from 0.05 to 1
-  double friction = 0;                   ///< Coulomb coefficient
-  SourceLocation location = {};          ///< of the element <clearance>
+  RestitutionDescription restitution = {};
+  double friction = 0;           ///< Coulomb coefficient
+  SourceLocation location = {};  ///< of the element <clearance>
 };
 
 // ---------------------------------------------------------------- drives

@@ -58,13 +58,19 @@ def terminal_table(outcomes):
     return "\n".join(text)
 
 
+def whole(lists):
+    """How many of these lists of rows have predictions, and all of them within."""
+    return sum(within == whole > 0 for within, whole in map(count, lists))
+
+
 def summary(outcomes):
-    """The last line: how many cases have all predictions within their uncertainty."""
-    run = [outcome for outcome in outcomes if outcome.rows and not outcome.failure]
-    good = [outcome for outcome in run if len(set(count(outcome.rows))) == 1]
-    counts = [count(outcome.rows) for outcome in run]
-    return "%d of %d predictions are within the uncertainty; %d of %d cases are with all of theirs" % (
-        sum(within for within, _ in counts), sum(whole for _, whole in counts), len(good), len(run))
+    """The last line: how many cases have all predictions within their uncertainty, and how many all measured ones."""
+    run = [outcome.rows for outcome in outcomes if outcome.rows and not outcome.failure]
+    counts = [count(rows) for rows in run]
+    text = "%d of %d predictions are within the uncertainty; %d of %d cases are with all of theirs" % (
+        sum(within for within, _ in counts), sum(each for _, each in counts), whole(run), len(run))
+    measured = [[row for row in rows if row.kind == MEASURED] for rows in run]
+    return text + (", %d with all measured ones" % whole(measured) if any(measured) else "")
 
 
 def markdown_row(texts):
