@@ -265,9 +265,10 @@ SceneBuilder block_that_breaks_away() {
 }
 
 TEST(StaticFriction, HoldsUntilItBreaksAway) {
-  // In the Newmark family a part of the acceleration alternates after the start, at most the one at the start.
-  const double alternating = 0.5 * 0.001 * 4.5 / kBlockMass;
   for (const std::string scheme : {"em", "edmc2", "m1", "m2", "std", "newmark", "hht2"}) {
+    // In the Newmark family a part of the acceleration alternates after the start, at most the one at the start.
+    const bool alternates = scheme == "newmark" || scheme == "hht2";
+    const double tolerance = alternates ? 0.5 * 0.001 * 4.5 / kBlockMass : 1e-6;
     Simulation simulation(block_that_breaks_away().scene, options(scheme, 0.001));
     simulation.command_effort(0, 0.999 * 4.5);
     run(simulation, 50, [&] { ASSERT_EQ(simulation.position(0), 0) << scheme; });
@@ -279,7 +280,7 @@ TEST(StaticFriction, HoldsUntilItBreaksAway) {
     run(simulation, 1);                 // in which schemes of the Newmark family have the mean of both efforts
     const double speed = simulation.velocity(0);
     run(simulation, 100);
-    EXPECT_NEAR(simulation.velocity(0) - speed, 0.1 * 0.5 / kBlockMass, alternating) << scheme;
+    EXPECT_NEAR(simulation.velocity(0) - speed, 0.1 * 0.5 / kBlockMass, tolerance) << scheme;
     simulation.command_effort(0, 0);
     run(simulation, 1000);
     EXPECT_NEAR(simulation.velocity(0), 0, 1e-14) << scheme;
