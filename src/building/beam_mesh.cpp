@@ -194,6 +194,9 @@ BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element
   out.stiffness_damping = beam.stiffness_proportional_damping;
   out.damping_scale = beam.damping_shares.cwiseSqrt();
   out.mass_damping = beam.mass_proportional_damping;
+  out.maxwell.reserve(beam.maxwell.size());
+  for (const scene::MaxwellElement& branch : beam.maxwell)
+    out.maxwell.push_back({branch.modulus_ratio, branch.relaxation_time});
 
   std::array<Vector3, Nodes> centroid, reference;
   NodalValues<Nodes> arc_length;

@@ -1,5 +1,6 @@
 #include "building/passes.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -86,6 +87,7 @@ void add_beams(const ScenePlan& plan, Model& model) {
     stiffness_point += Element::kStiffnessPoints;
     mass_point += Element::kMassPoints;
     block += Element::kNodes * Element::kNodes;
+    model.maxwell_branches = std::max(model.maxwell_branches, static_cast<int>(element.maxwell.size()));
   });
   model.stiffness_point_count = stiffness_point;
   model.mass_point_count = mass_point;

@@ -198,6 +198,22 @@ void print_beams(const Simulation& simulation) {
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }
 
+/// Prints the Maxwell elements of the beams, and their stiffness at once: before they relax, relative to that at rest.
+void print_relaxation(const Simulation& simulation) {
+  bool is_first = true;
+  for (const scene::LinkDescription& link : simulation.scene().links) {
+    if (!link.beam || link.beam->maxwell.empty()) continue;
+    if (is_first) fmt::print("\n{:<24} {:>9}   {}\n", "relaxing beam", "at once", "moduli and relaxation times");
+    is_first = false;
+    double at_once = 1;
+    for (const scene::MaxwellElement& branch : link.beam->maxwell) at_once += branch.modulus_ratio;
+    fmt::print("{:<24} {:>9.5g}  ", link.name, at_once);
+    for (const auto& [ratio, time] : link.beam->maxwell) fmt::print(" {:.5g} ({:.5g} s)", ratio, time);
+    fmt::print("\n");
+  }
+  if (!is_first) fmt::print("(relative to the stiffness at rest)\n");
+}
+
 /// The loop joint whose loop contains a link. The scene must have loop joints.
 std::string loop_joint_of(const scene::SceneDescription& scene, const std::string& link) {
   const auto hangs_on = [&](std::string child) {  // whether `link` is on the chain from `child` to the root
@@ -293,6 +309,7 @@ void add_check(CommandLine& line) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
+    print_relaxation(simulation);
     print_force_elements(simulation);
     print_contacts(simulation);
     print_driven_ends(simulation);

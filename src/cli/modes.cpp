@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/commands.h"
@@ -41,6 +43,11 @@ void print_shape(const Simulation& simulation, const Mode& mode) {
   print("probe ", probe_motions(simulation, mode));
 }
 
+bool has_maxwell(const scene::SceneDescription& scene) {
+  return std::any_of(scene.links.begin(), scene.links.end(),
+                     [](const scene::LinkDescription& link) { return link.beam && !link.beam->maxwell.empty(); });
+}
+
 void print_eigenvalue(const Mode& mode) {
   fmt::print("{:.7g} Hz", mode.frequency);
   if (mode.is_free()) fmt::print(" (free: nothing holds this motion)");
@@ -52,6 +59,8 @@ void print_eigenvalue(const Mode& mode) {
 
 void print_text(const Simulation& simulation, const std::vector<Mode>& modes, bool is_equilibrium) {
   print_where(simulation, is_equilibrium);
+  if (has_maxwell(simulation.scene()))
+    fmt::print("(with the stiffness of beams at rest, without their <maxwell> elements)\n");
   for (std::size_t i = 0; i < modes.size(); ++i) {
     fmt::print("mode {}: ", i + 1);
     print_eigenvalue(modes[i]);
@@ -72,6 +81,7 @@ std::string name_of(const Mode& mode, std::size_t number) {
 pictures::EncodedRun picture_of_modes(const Simulation& simulation, const std::vector<Mode>& modes,
                                       bool is_equilibrium) {
   std::vector<pictures::NamedMode> named;
+  named.reserve(modes.size());
   for (const Mode& mode : modes) named.push_back({name_of(mode, named.size() + 1), mode});
   const std::string title = fmt::format("{}: natural modes about {}", simulation.scene().name,
                                         is_equilibrium ? "the equilibrium" : "the initial configuration");

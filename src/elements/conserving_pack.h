@@ -4,6 +4,7 @@
 
 #include "elements/beam_point.h"
 #include "elements/conserving_element.h"
+#include "elements/maxwell.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm::packs {
@@ -25,7 +26,8 @@ void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNo
                      const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
                      const PointKinematicsT<Pack>* begin, const StrainMemoryT<Pack>* memory, double step,
                      bool with_tangent, const CarriedStrains<Nodes, Pack>* carried, PointKinematicsT<Pack>* end,
-                     StrainMemoryT<Pack>* end_memory, BlockSystem<Nodes, Pack>& system);
+                     StrainMemoryT<Pack>* end_memory, BlockSystem<Nodes, Pack>& system,
+                     const MaxwellBranches<Pack>& branches = {});
 
 template <int Nodes>
 void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "elements/conserving_element.h"
+#include "elements/maxwell.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm {
@@ -158,6 +159,28 @@ struct StructuralDamper {
   }
 };
 
+/// A Maxwell branch of the material at a stiffness point: the stress g C e_mean of its spring, see MaxwellCoefficients.
+template <typename S, int Size = 6>
+struct MaxwellDamper {
+  using Strain = Eigen::Matrix<S, Size, 1>;
+  S factor, dissipated;  // [-], [J/m]
+  Strain remembered, end;
+
+  /// `begin`: e_0; `stress`: C s.
+  template <class Stiffness>
+  MaxwellDamper(const MaxwellCoefficients<S>& c, const Strain& begin, const Strain& s, const Strain& stress,
+                const Stiffness& stiffness)
+      : factor(c.modulus_ratio * c.yields), end(c.keeps * begin + c.gains * s) {
+    const Strain begin_stress = stiffness.stress(begin);
+    remembered = -(c.modulus_ratio * c.gains) * begin_stress;
+    const Strain mean = c.gains * begin + c.yields * s, mean_stress = c.gains * begin_stress + c.yields * stress;
+    const S loss = S(1) - c.keeps;
+    const Strain change = c.gains * s - loss * begin, change_stress = c.gains * stress - loss * begin_stress;
+    dissipated = c.modulus_ratio * (c.flow * strain_product<S, Size>(mean, mean_stress) +
+                                    c.excess * strain_product<S, Size>(change, change_stress));
+  }
+};
+
 /// The energy multiplier mu of an element. The conjugate strain s differs from the change of strain Delta Sigma by a
 /// defect, which is due to relative rotations of the nodes. The work of the stresses on Delta Sigma - s is missing in
 /// the energy balance. Moments mu (w_i - mean w) on the nodes, which sum to zero, do exactly this work (beyond.md 1.3).
@@ -258,8 +281,9 @@ void set_strains(const Element& element, const Motion& nodes, const Kinematics* 
 
 /// Computes internal forces, damping and translational inertia of one element of the EM family over a step of length
 /// `step` [s], at the points of set_points(). `begin` holds the points at t_n, `end` those at t_{n+1}. `memory` and
-/// `end_memory` are for numerical dissipation and damped elements; else they may be null. Rotary inertia is added
-/// elsewhere. Sets only the tangent of the linear terms; add_tangent() (conserving_tangent.h) adds the rest.
+/// `end_memory` are for numerical dissipation and damped elements; else they may be null. `branches`: Maxwell branches
+/// of the material. Rotary inertia is added elsewhere. Sets only the tangent of the linear terms; add_tangent()
+/// (conserving_tangent.h) adds the rest.
 ///
 /// Generalised shape functions for about the middle of the step test the moment rows and interpolate the increments.
 /// They are those of mid_functions() (MidFunctions::Explicit), or the average of those of the beginning and the end
@@ -270,11 +294,11 @@ void set_strains(const Element& element, const Motion& nodes, const Kinematics* 
 ///
 /// With `has_carried`, the geometric part of the tangent uses carried strains in place of those of the trial
 /// configuration. The residual does not depend on them (docs/notes/newton.md).
-template <int Nodes, class Element, class Motion, class Kinematics, class Memory, class Points, class Multiplier,
-          class System>
+template <int Nodes, class Element, class Motion, class Kinematics, class Memory, class Branches, class Points,
+          class Multiplier, class System>
 void set_forces(const Element& element, const Motion& nodes, const TimeRule& rule, const Kinematics* begin,
                 const Kinematics* end, const Memory* memory, double step, bool with_tangent, bool has_carried,
-                Memory* end_memory, Points& at, Multiplier& multiplier, System& system) {
+                Memory* end_memory, const Branches& branches, Points& at, Multiplier& multiplier, System& system) {
   using S = std::decay_t<decltype(system.dissipated)>;
   using Strain = std::decay_t<decltype(begin->strain)>;
   constexpr int kStrains = Strain::SizeAtCompileTime;
@@ -323,6 +347,13 @@ void set_forces(const Element& element, const Motion& nodes, const TimeRule& rul
       p.factor += damper.factor;
       add(damper);
       end_memory[k].delayed_rate = damper.delayed_rate;
+    }
+    for (int b = k * branches.count; b < (k + 1) * branches.count; ++b) {
+      const MaxwellDamper<S, kStrains> damper(branches.coefficients[b - k * branches.count], branches.begin[b],
+                                              p.own.conjugate_strain, p.own.conjugate_stress, section);
+      p.factor += damper.factor;
+      add(damper);
+      branches.end[b] = damper.end;
     }
     if (has_memory) end_memory[k].rate = end_rate(memory[k], p.own.conjugate_strain, step);
     const Strain weighted = weight * Strain(stress + p.factor * p.own.conjugate_stress);

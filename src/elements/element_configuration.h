@@ -2,6 +2,7 @@
 /// Reads the nodal motion, and the strains, of one element from a state.
 
 #include "elements/beam_point.h"
+#include "model/model.h"
 #include "model/state.h"
 
 namespace flexarm {
@@ -29,6 +30,12 @@ template <int Nodes, class Point>
 PointRotation point_rotation(const LocalRotations<Nodes>& local, const Point& point,
                              const std::vector<PointRotation>& kept, int index) {
   return kept.empty() ? local.evaluate(point.shape, point.derivative) : kept[index];
+}
+
+/// Returns the strains of the springs of a stiffness point's Maxwell branches, of which there are
+/// Model::maxwell_branches. `point`: index among all stiffness points.
+inline const Vector6* branch_strains(const Model& model, const State& state, int point) {
+  return state.branch_strains.data() + static_cast<std::size_t>(point) * model.maxwell_branches;
 }
 
 /// Returns {Gamma, K} [-, 1/m] about the mass centroid at stiffness point k, by the scheme's own interpolation.

@@ -331,14 +331,14 @@ template <int Nodes, typename S>
 void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
           const PointKinematics<S>* begin, const StrainMemory<S>* memory, double step, bool with_tangent,
           const CarriedStrains<Nodes, S>* carried, PointKinematics<S>* end, StrainMemory<S>* end_memory,
-          BlockSystem<Nodes, S>& system) {
+          BlockSystem<Nodes, S>& system, const MaxwellBranches<S, 3>& branches = {}) {
   StepPoints<Nodes, S> at;
   EnergyMultiplier<Nodes, S> multiplier;
   at.slope = slope;
   set_points<Nodes, S>(element, nodes.end, nodes.cosine, nodes.sine, end);
   conserving::set_strains<Nodes>(element, nodes, begin, end, carried, at);
   conserving::set_forces<Nodes>(element, nodes, rule, begin, end, memory, step, with_tangent, carried != nullptr,
-                                end_memory, at, multiplier, system);
+                                end_memory, branches, at, multiplier, system);
   if (with_tangent) add_tangent<Nodes, S>(element, nodes, rule, at, multiplier, system);
 }
 

@@ -17,10 +17,10 @@ template <int Nodes>
 void beam(const Element<Nodes, Pack>& element, const Pack& slope, const Nodal<Nodes, Pack>& nodes, const TimeRule& rule,
           const PointKinematics<Pack>* begin, const StrainMemory<Pack>* memory, double step, bool with_tangent,
           const CarriedStrains<Nodes, Pack>* carried, PointKinematics<Pack>* end, StrainMemory<Pack>* end_memory,
-          BlockSystem<Nodes, Pack>& system) {
+          BlockSystem<Nodes, Pack>& system, const MaxwellBranches<Pack, 3>& branches) {
   simd::run([&] {
     planar::beam<Nodes, Pack>(element, slope, nodes, rule, begin, memory, step, with_tangent, carried, end, end_memory,
-                              system);
+                              system, branches);
   });
 }
 

@@ -2,6 +2,7 @@
 /// The kernels of planar_beam.h for packs of elements. They are compiled once for each order of elements and use the
 /// widest registers of the processor (math/simd.h). `Nodes`: 2 to 5.
 
+#include "elements/maxwell.h"
 #include "elements/planar_element.h"
 #include "schemes/time_rule.h"
 
@@ -16,7 +17,7 @@ template <int Nodes>
 void beam(const Element<Nodes, Pack>& element, const Pack& slope, const Nodal<Nodes, Pack>& nodes, const TimeRule& rule,
           const PointKinematics<Pack>* begin, const StrainMemory<Pack>* memory, double step, bool with_tangent,
           const CarriedStrains<Nodes, Pack>* carried, PointKinematics<Pack>* end, StrainMemory<Pack>* end_memory,
-          BlockSystem<Nodes, Pack>& system);
+          BlockSystem<Nodes, Pack>& system, const MaxwellBranches<Pack, 3>& branches = {});
 
 template <int Nodes>
 void carry_strains(const Element<Nodes, Pack>& element, const Pack& slope, const Nodal<Nodes, Pack>& nodes,

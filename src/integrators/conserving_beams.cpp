@@ -13,7 +13,7 @@ namespace {
 
 /// Groups elements of one order into packs.
 template <int Nodes>
-PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements) {
+PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements, int branches) {
   constexpr int lanes = Pack::kLanes;
   const int count = static_cast<int>(elements.size());
   PackGroup<Nodes> packs((count + lanes - 1) / lanes);
@@ -30,6 +30,7 @@ PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements) {
       pack.first_block[lane] = element.first_block;
       pack.first_stiffness_point[lane] = element.first_stiffness_point;
       set_lane(pack.element, lane, element);
+      pack.branches.set(lane, element.maxwell, element.first_stiffness_point, branches, Nodes - 1);
     }
     is_uniform = is_uniform && pack.element.is_uniform;
     for (const auto& section : pack.element.sections) is_coupled = is_coupled || section.is_coupled;
@@ -67,7 +68,7 @@ ConservingBeams::ConservingBeams(const StepConfiguration& configuration, const S
   for_each_group(configuration.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     auto& packs = std::get<PackGroup<N>>(groups_);
-    packs = packs_of(group.elements);
+    packs = packs_of(group.elements, configuration.model().maxwell_branches);
     if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
   });
   if (has_memory_) end_memory_.resize(configuration.model().stiffness_point_count);
@@ -85,8 +86,10 @@ void ConservingBeams::begin() {
   }
   holds_begin_points_ = true;
   set_mid_functions();
+  const StepMotion step = configuration_.motion();
   for_each_group(groups_, [&](auto& packs) {
     for (auto& pack : packs) {
+      pack.branches.begin(step.state, step.step, [](int, const Vector6& strain) -> const Vector6& { return strain; });
       for (std::size_t k = 0; k < pack.carried.end.size(); ++k) pack.carried.end[k] = pack.points[begin_][k].strain;
       pack.carried.has_conjugate = false;
     }
@@ -129,6 +132,10 @@ void ConservingBeams::accept(State& state) {
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
   const StepMotion step = configuration_.motion();
   for (std::size_t i = 0; i < state.nodes.size(); ++i) state.nodes[i].mean_spin = step.increments[i] / step.step;
+  for_each_group(groups_, [&](auto& packs) {
+    for (const auto& pack : packs)
+      pack.branches.accept(pack.lanes, state, [](int, const Vector6& strain) { return strain; });
+  });
   begin_ = 1 - begin_;  // points at the end of this step are points at the beginning of the next one
 }
 
@@ -273,7 +280,8 @@ void ConservingBeams::add_forces(Balance& balance) {
         packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
                                   pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
                                   balance.tangent != nullptr, balance.carried ? &pack.carried : nullptr,
-                                  pack.points[1 - begin_].data(), has_memory_ ? new_memory.data() : nullptr, system);
+                                  pack.points[1 - begin_].data(), has_memory_ ? new_memory.data() : nullptr, system,
+                                  pack.branches.of_step());
         if (has_memory_) scatter<N>(pack, new_memory, end_memory_);
         scatter<N>(pack, system, balance, balance.tangent && !condensation);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];

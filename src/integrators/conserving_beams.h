@@ -7,6 +7,7 @@
 
 #include "elements/conserving_pack.h"
 #include "integrators/beam_family.h"
+#include "integrators/pack_branches.h"
 
 namespace flexarm {
 
@@ -20,6 +21,7 @@ struct ElementPack {
   ConservingElement<Nodes, Pack> element;
   ElementFunctions<Nodes, Pack> mid_functions;
   CarriedStrains<Nodes, Pack> carried;
+  PackBranches<> branches;
   std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
 };
 template <int Nodes>

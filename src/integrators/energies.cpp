@@ -47,6 +47,11 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
       const double weight = point.weight;
       const Vector6 strain = centroid_strain(element, nodes, local, state, k) - prestrain;
       out.strain += 0.5 * weight * strain.dot(point.stiffness * strain);
+      const Vector6* branch = branch_strains(model, state, element.first_stiffness_point + k);
+      for (const MaxwellBranch& maxwell : element.maxwell) {
+        out.strain += 0.5 * weight * maxwell.modulus_ratio * branch->dot(point.stiffness * *branch);
+        ++branch;
+      }
       if (!state.strain_memory.empty())
         out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], element, k);
     }

@@ -56,6 +56,8 @@ void PlanarBeams::set_packs(const std::vector<BeamElement<Nodes>>& elements, Gro
       pack.first_stiffness_point[lane] = element.first_stiffness_point;
       pack.basis[lane] = plane_.strain_basis(element.nodes[0]);
       planar::set_lane(pack.element, lane, element, pack.basis[lane]);
+      pack.branches.set(lane, element.maxwell, element.first_stiffness_point, configuration_.model().maxwell_branches,
+                        Nodes - 1);
     }
     is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
     has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
@@ -104,6 +106,9 @@ void PlanarBeams::begin() {
   set_slopes();
   for_each_group(groups_, [&](auto& packs) {
     for (auto& pack : packs) {
+      pack.branches.begin(step.state, step.step, [&](int lane, const Vector6& strain) {
+        return Vector3(pack.basis[lane].transpose() * strain);
+      });
       for (std::size_t k = 0; k < pack.carried.end.size(); ++k) pack.carried.end[k] = pack.points[begin_][k].strain;
       pack.carried.has_conjugate = false;
     }
@@ -249,7 +254,7 @@ void PlanarBeams::add_forces(Balance& balance) {
         planar::packs::beam<N>(pack.element, pack.slope, gather_motion<N>(pack), rule_, pack.points[begin_].data(),
                                has_memory_ ? memory.data() : nullptr, step, balance.tangent != nullptr,
                                balance.carried ? &pack.carried : nullptr, pack.points[1 - begin_].data(),
-                               has_memory_ ? new_memory.data() : nullptr, system);
+                               has_memory_ ? new_memory.data() : nullptr, system, pack.branches.of_step());
         if (has_memory_) scatter<N>(pack, new_memory);
         scatter<N>(pack, system, balance);
       }
@@ -302,6 +307,11 @@ void PlanarBeams::carry_strains(const double* update) {
 
 void PlanarBeams::accept(State& state) {
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
+  for_each_group(groups_, [&](const auto& packs) {
+    for (const auto& pack : packs)
+      pack.branches.accept(pack.lanes, state,
+                           [&](int lane, const Vector3& strain) { return Vector6(pack.basis[lane] * strain); });
+  });
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     NodeState& node = state.nodes[i];
     node.mean_spin = (rates_[i].increment / configuration_.step()) * plane_.normal;

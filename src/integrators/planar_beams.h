@@ -8,6 +8,7 @@
 
 #include "elements/planar_pack.h"
 #include "integrators/beam_family.h"
+#include "integrators/pack_branches.h"
 #include "model/plane.h"
 
 namespace flexarm {
@@ -56,6 +57,7 @@ class PlanarBeams : public BeamFamily {
     planar::Element<Nodes, Pack> element;
     Pack slope = Pack(1.0);  // ratio of the middle functions' derivatives to those of Lagrange's functions
     planar::CarriedStrains<Nodes, Pack> carried;
+    PackBranches<3> branches;
     std::array<std::array<planar::PointKinematics<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
   };
   template <int Nodes>

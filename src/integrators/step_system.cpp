@@ -106,6 +106,7 @@ void StepSystem::accept_rest(State& state) {
   beams_->accept(state);
   std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
+  std::fill(state.branch_strains.begin(), state.branch_strains.end(), Vector6::Zero());  // all have relaxed
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   state.drives.restart(state.efforts);
   reactions_.accept_rest(rows_, state);

@@ -10,6 +10,13 @@
 
 namespace flexarm {
 
+/// A Maxwell element of the material, in parallel with the section's stiffness C: a spring g C in series with a
+/// dashpot.
+struct MaxwellBranch {
+  double modulus_ratio;    ///< g [-]
+  double relaxation_time;  ///< tau [s]
+};
+
 /// One Lagrange element with `Nodes` nodes (order Nodes - 1). Stiffness: Nodes - 1 Gauss points (reduced: no shear or
 /// membrane locking), inertia: Nodes Gauss points. Derivatives and weights are with respect to the arc length of the
 /// undeformed reference line. (Muñoz 2004, sec. 3 and 5; beam.md 2.3)
@@ -40,6 +47,7 @@ struct BeamElement {
   double stiffness_damping = 0;              ///< eta of F += eta D C D d(strain)/dt [s]
   Vector6 damping_scale = Vector6::Ones();   ///< diagonal of D, at most 1: strain i has eta D_ii^2
   double mass_damping = 0;                   ///< coefficient of mass-proportional damping [1/s]
+  std::vector<MaxwellBranch> maxwell;        ///< at most Model::maxwell_branches
   int prestrain = -1;                        ///< index into Model::prestrains; -1: none
   int first_block = 0;                       ///< block of nodes i, j in TangentBackend: first_block + i * Nodes + j
 };

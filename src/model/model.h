@@ -179,6 +179,7 @@ struct Model {
   std::vector<NodalInertia> inertias;  ///< per node
   BeamGroups beams;
   int stiffness_point_count = 0, mass_point_count = 0;
+  int maxwell_branches = 0;  ///< the largest number of Maxwell branches of a beam
   JointList joints;
   std::vector<HeldJoint> held;
   std::vector<SlideLine> slide_lines;

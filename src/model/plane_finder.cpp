@@ -282,12 +282,16 @@ void for_each_vector(const Model& model, const PlaneOfMotion& plane, const State
   }
   for_each_element(model.beams, [&](const auto& element) {
     const Vector3 normal = plane.material_normal(element.nodes[0]);
-    for (int k = 0; k < element.kStiffnessPoints && !state.strain_memory.empty(); ++k) {
-      const StrainMemory& memory = state.strain_memory[element.first_stiffness_point + k];
-      for (const Vector6* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) {
-        visit(kStrain, normal, strain->template head<3>());
-        visit(kCurvature, normal, strain->template tail<3>());
-      }
+    const auto visit_strain = [&](const Vector6& strain) {
+      visit(kStrain, normal, strain.head<3>());
+      visit(kCurvature, normal, strain.tail<3>());
+    };
+    for (int k = 0; k < element.kStiffnessPoints; ++k) {
+      const std::size_t point = element.first_stiffness_point + k, branches = model.maxwell_branches;
+      for (std::size_t b = 0; b < branches; ++b) visit_strain(state.branch_strains[point * branches + b]);
+      if (state.strain_memory.empty()) continue;
+      const StrainMemory& memory = state.strain_memory[point];
+      for (const Vector6* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) visit_strain(*strain);
     }
   });
 }

@@ -64,6 +64,8 @@ struct State {
   std::vector<int> left_lines;       ///< slides that have left their lines, in order of time
   std::vector<MassPointState> mass_points;
   std::vector<Vector6> strain_rates;  ///< per stiffness point; Newmark family with damping only
+  /// Per stiffness point, Model::maxwell_branches each: strains of the branches' springs [-, 1/m].
+  std::vector<Vector6> branch_strains;
   // Empty unless the scheme needs them:
   std::vector<StrainMemory> strain_memory;                         ///< per stiffness point
   std::vector<PointRotation> stiffness_rotations, mass_rotations;  ///< per point

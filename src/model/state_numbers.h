@@ -38,6 +38,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
     vector("a mass point's angular acceleration", point.angular_acceleration);
   }
   for (auto& rate : state.strain_rates) vector("a strain rate", rate);
+  for (auto& strain : state.branch_strains) vector("a strain of a Maxwell element", strain);
   for (auto& command : state.commands) visit(kCommand, command);
   for (auto& wrench : state.wrenches) {
     for (auto* part : {&wrench.arm, &wrench.force, &wrench.moment, &wrench.pull.target})

@@ -166,11 +166,23 @@ bool read_damping_of_strains(const XmlElement& damping, BeamDescription& descrip
   return true;
 }
 
+void read_maxwell(const XmlElement& damping, BeamDescription& description) {
+  for (const XmlElement& element : damping.children()) {
+    if (element.tag() != "maxwell") continue;
+    element.expect_only({"modulus_ratio", "relaxation_time"});
+    const std::optional<double> ratio = element.number("modulus_ratio", kPositive);
+    const std::optional<double> time = element.number("relaxation_time", kPositive);
+    if (ratio && time) description.maxwell.push_back({*ratio, *time});
+  }
+}
+
 /// Reads the damping coefficients eta (stiffness-proportional) and alpha (mass-proportional), or computes them from the
 /// damping ratio of modes, which is eta w / 2 + alpha / (2 w) at the circular frequency w.
 void read_damping(const XmlElement& damping, BeamDescription& description) {
   damping.expect_only({"stiffness_proportional", "mass_proportional", "ratio", "frequency", "frequencies", "axial",
-                       "shear_y", "shear_z", "torsion", "bending_y", "bending_z"});
+                       "shear_y", "shear_z", "torsion", "bending_y", "bending_z"},
+                      {"maxwell"});
+  read_maxwell(damping, description);
   if (read_damping_of_strains(damping, description)) return;
   double &eta = description.stiffness_proportional_damping, &alpha = description.mass_proportional_damping;
   if (!damping.has("ratio")) {
@@ -223,7 +235,11 @@ std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::s
   read_orientation(beam, first_tangent, description);
   if (const std::optional<Section> section = read_section(beam)) description.section = *section;
   if (const std::optional<XmlElement> damping = beam.child("damping")) read_damping(*damping, description);
-  if (const std::optional<XmlElement> prestrain = beam.child("prestrain")) read_prestrain(*prestrain, description);
+  if (const std::optional<XmlElement> prestrain = beam.child("prestrain")) {
+    read_prestrain(*prestrain, description);
+    // The springs of Maxwell elements would have to relax from the prestrain, too.
+    if (!description.maxwell.empty()) prestrain->error("a beam with <maxwell> elements has no prestrain");
+  }
   read_hubs(beam, description);
   if (beam.findings().error_count() > errors) return std::nullopt;
   return description;

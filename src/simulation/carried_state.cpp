@@ -251,7 +251,11 @@ class Carrier {
   }
 
   void overlay_points(State& out) const {
+    const int branches = std::min(old_.maxwell_branches, new_.maxwell_branches);
     for (std::size_t i = 0; i < same_.stiffness_points.size(); ++i) {
+      for (int b = 0; b < branches && same_.stiffness_points[i] >= 0; ++b)
+        take(state_.branch_strains, same_.stiffness_points[i] * old_.maxwell_branches + b, out.branch_strains,
+             i * new_.maxwell_branches + b);
       take(state_.strain_rates, same_.stiffness_points[i], out.strain_rates, i);
       take(state_.strain_memory, same_.stiffness_points[i], out.strain_memory, i);
       take(state_.stiffness_rotations, same_.stiffness_points[i], out.stiffness_rotations, i);

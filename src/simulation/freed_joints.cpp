@@ -62,6 +62,7 @@ class FreedState {
     out.origin = state_.origin;
     out.mass_points = state_.mass_points;
     out.strain_memory = state_.strain_memory;
+    out.branch_strains = state_.branch_strains;
     out.commands = state_.commands;
     out.actuators = state_.actuators;
     for (const NodalLoad& wrench : state_.wrenches)

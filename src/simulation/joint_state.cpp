@@ -318,6 +318,7 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   out.steps = state.steps;
   out.left_lines = state.left_lines;
   out.strain_rates = state.strain_rates;
+  out.branch_strains = state.branch_strains;
   out.total_rotations = state.total_rotations;
   out.commands = state.commands;
   out.wrenches = state.wrenches;

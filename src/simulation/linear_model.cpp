@@ -41,6 +41,7 @@ std::vector<std::string> left_out(const Model& model, const State& state) {
   if (std::any_of(state.wrenches.begin(), state.wrenches.end(),
                   [](const NodalLoad& wrench) { return wrench.pull.damping > 0; }))
     effects.push_back("dampers of springs that pull on links");
+  if (model.maxwell_branches > 0) effects.push_back("<maxwell> elements of beams, which have the stiffness at rest");
   for (const Coordinate& coordinate : model.coordinates) {
     if (coordinate.friction != 0 || coordinate.friction_coefficient != 0)
       effects.push_back(fmt::format("friction of joint coordinate '{}'", coordinate.name));

@@ -48,7 +48,10 @@ struct DeformedElement {
     const Vector6 prestrain = prestrain_at(model, element.prestrain, state.time);
     for (int k = 0; k < Nodes - 1; ++k) {
       strains[k] = centroid_strain(element, nodes, local, state, k);
-      resultants[k] = element.stiffness_points[k].stiffness * (strains[k] - prestrain);
+      Vector6 elastic = strains[k] - prestrain;
+      const Vector6* branch = branch_strains(model, state, element.first_stiffness_point + k);
+      for (const MaxwellBranch& maxwell : element.maxwell) elastic += maxwell.modulus_ratio * *branch++;
+      resultants[k] = element.stiffness_points[k].stiffness * elastic;
     }
   }
 
@@ -223,6 +226,8 @@ State initial_state(const Model& model, double time) {
   state.released = model.initial_released;
   state.mass_points.resize(model.mass_point_count);
   state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
+  state.branch_strains.assign(static_cast<std::size_t>(model.stiffness_point_count) * model.maxwell_branches,
+                              Vector6::Zero());
   state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
   state.efforts.assign(model.coordinates.size(), 0.0);
   state.drives.resize(model.coordinates.size());

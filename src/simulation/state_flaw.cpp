@@ -48,6 +48,8 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
   flaw.require_size("the number of joints", state.released.size(), initial.released.size());
   flaw.require_size("the number of mass points", state.mass_points.size(), initial.mass_points.size());
   flaw.require_size("the number of strain rates", state.strain_rates.size(), initial.strain_rates.size());
+  flaw.require_size("the number of strains of Maxwell elements", state.branch_strains.size(),
+                    initial.branch_strains.size());
   flaw.require_size("the number of commands", state.commands.size(), initial.commands.size());
   flaw.require_size("the number of efforts", state.efforts.size(), initial.efforts.size());
   flaw.require_size("the number of impulses of motions", state.drives.impulse.size(), initial.drives.impulse.size());

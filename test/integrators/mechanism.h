@@ -164,6 +164,7 @@ inline State random_state(const Model& model, RandomSource& random, double size)
   }
   for (MassPointState& point : state.mass_points) point = {random.vector(), random.vector()};
   for (Vector6& rate : state.strain_rates) rate = random.vector6();
+  for (Vector6& strain : state.branch_strains) strain = size * random.vector6();
   return state;
 }
 

@@ -335,6 +335,19 @@ TEST(GoodScene, DampingOfStrains) {
   EXPECT_EQ(good_scene().links[2].beam->damping_shares, Vector6::Ones());
 }
 
+TEST(GoodScene, MaxwellElements) {
+  const ReadResult result =
+      read(good_scene_with(R"(<damping stiffness_proportional="1e-4" mass_proportional="0.1"/>)",
+                           R"(<damping mass_proportional="3"> <maxwell modulus_ratio="0.4" relaxation_time="0.02"/>
+                                <maxwell modulus_ratio="0.08" relaxation_time="0.5"/> </damping>)"));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  const BeamDescription& beam = result.scene->links[2].beam.value();
+  EXPECT_EQ(beam.mass_proportional_damping, 3);
+  ASSERT_EQ(beam.maxwell.size(), 2u);
+  EXPECT_EQ(beam.maxwell[0].modulus_ratio, 0.4);
+  EXPECT_EQ(beam.maxwell[1].relaxation_time, 0.5);
+}
+
 TEST(GoodScene, Prestrain) {
   const BeamDescription beam = good_scene().links[4].beam.value();
   EXPECT_EQ(beam.prestrain[0].value()(5), 1e-4);

@@ -1,6 +1,8 @@
 #pragma once
 /// Scenes for tests that steps allocate nothing.
 
+#include <string>
+
 namespace flexarm::test {
 
 /// A boom on oil, with a pump, relief valves and voids that are filled.
@@ -14,6 +16,18 @@ inline const char* const kOilScene = R"xml(<robot name="r"> <link name="world"/>
         <pump name="pump"> <drive rotor_inertia="20"/> </pump> </hydraulics> </cylinder>
     <simulation> <integrator scheme="em" step="1e-3"/> <effort joint="pump" history="3000*sin(40*t)"/> </simulation>
     </robot>)xml";
+
+/// A beam of several Maxwell elements that turns in space, or in a plane if `axis` is along y.
+inline std::string relaxing_scene(const std::string& axis) {
+  return R"xml(<robot name="r"> <link name="world"/>
+    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz=")xml" +
+         axis + R"xml("/> </joint>
+    <link name="rod"> <beam elements="6" order="2"> <centerline> <line to="1 0 0"/> </centerline>
+      <section ea="2e5" ga2="1e5" ga3="1e5" gj="2" ei2="2.5" ei3="2.5" mass="0.5" j1="2e-4" j2="1e-4" j3="1e-4"/>
+      <damping> <maxwell modulus_ratio="0.4" relaxation_time="0.02"/> <maxwell modulus_ratio="0.1" relaxation_time="1"/>
+      </damping> </beam> </link>
+    <simulation> <gravity xyz="0 0 -9.81"/> <integrator scheme="em" step="1e-3"/> </simulation> </robot>)xml";
+}
 
 /// Lines along a rod, one of them paid out by a winch, and drag of the air.
 inline const char* const kTendonScene = R"xml(<robot name="r"> <link name="world"/>

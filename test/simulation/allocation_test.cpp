@@ -64,6 +64,17 @@ TEST_F(Allocation, NoneWithHydraulics) {
   }
 }
 
+// In space and in a plane.
+TEST_F(Allocation, NoneWithMaxwellElements) {
+  for (const char* axis : {"0.3 1 0", "0 1 0"}) {
+    const scene::ReadResult read = scene::read_scene_text(relaxing_scene(axis), "relaxing.urdf");
+    ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
+    Simulation simulation(*read.scene);
+    expect_none_after_the_first_step(simulation, 100, [](const StepResult& result) { EXPECT_TRUE(result.converged); });
+    EXPECT_GT(simulation.energies().dissipated, 0);
+  }
+}
+
 // A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch.
 TEST_F(Allocation, NoneWithTendons) {
   const std::string text = R"xml(<robot name="r"> <link name="world"/>

@@ -119,6 +119,14 @@ TEST(Planar, IsTheSameMotionAsInThreeDimensions) {
       expect_same_motion(tilted_arm(turn).scene, scheme, 50);
 }
 
+TEST(Planar, TakesMaxwellElements) {
+  SceneBuilder b = tilted_arm(kTilt);
+  for (const std::size_t link : {2, 4})
+    b.scene.links[link].beam->maxwell = {{0.4, 0.02}, {0.1 * static_cast<double>(link), 0.5}};
+  b.scene.links[4].beam->maxwell.push_back({0.2, 1e-4});  // one more than the other beam
+  for (const char* scheme : {"em", "em0", "em_symmetric", "edmc1", "edmc2"}) expect_same_motion(b.scene, scheme, 50);
+}
+
 TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
   for (const char* file : {"config/speed/double_pendulum.urdf", "config/speed/spin_up.urdf",
                            "config/examples/rigid_double_pendulum.urdf"}) {

@@ -82,6 +82,12 @@ struct HubDescription {
   SourceLocation location;
 };
 
+/// A spring and a dashpot in series (a Maxwell element), in parallel with the stiffness of the beam's sections.
+struct MaxwellElement {
+  double modulus_ratio = 0;    ///< stiffness of the spring, relative to that of the sections at rest [-]
+  double relaxation_time = 0;  ///< in which its stress decays by the factor e at constant strain [s]
+};
+
 /// The beam of a flexible link.
 struct BeamDescription {
   std::optional<int> elements;  ///< number of elements; empty: chosen automatically; 0: the beam is rigid
@@ -94,6 +100,7 @@ struct BeamDescription {
   /// Damping of each strain component relative to that factor, at most 1: axial, shear y z, torsion, bending y z.
   Vector6 damping_shares = Vector6::Ones();
   double mass_proportional_damping = 0;  ///< [1/s]
+  std::vector<MaxwellElement> maxwell;   ///< relaxation of the material (generalised Maxwell model)
   /// Strains at which the beam has no stress: axial, shear y z [-], torsion, bending y z [1/m]; empty: zero.
   std::array<std::optional<TimeFunction>, 6> prestrain;
   std::vector<HubDescription> hubs;  ///< at most one per end
