@@ -40,8 +40,8 @@ class Recorder : public ResultWriter {
   Rows& rows_;
 };
 
-/// Returns the rows that are written every third step of `steps`. On the way the simulation is reset once, and its steps
-/// become shorter.
+/// Returns the rows that are written every third step of `steps`. On the way the simulation is reset once, and its
+/// steps become shorter.
 Rows recorded(const scene::SceneDescription& scene, int steps, bool in_background) {
   Rows rows;
   Simulation simulation(scene);
