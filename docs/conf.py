@@ -73,7 +73,8 @@ CONTENTS = {
     "docs/validation/README": [("", " ".join(VALIDATION))],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
-        ("", """beam joints beyond explicit newton tree planar kernel stops drives lines oil contact linearisation
+        ("", """beam joints refinement beyond explicit newton tree planar kernel stops drives lines oil contact
+            linearisation
             sensitivities accuracy tuning page"""),
     ],
 }
