@@ -21,7 +21,7 @@ const char* explicit_obstacle(const Model& model) {
   for_each_element(model.beams, [&](const auto&) { has_beams = true; });
   if (has_beams) return "flexible links";
   if (!model.slide_lines.empty()) return "sliders";
-  if (!model.force_elements.empty()) return "springs, lines or contacts between points, or drag";
+  if (!model.force_elements.empty()) return "springs, lines, drag or contacts";
   if (!model.held.empty()) return "joints that a motion holds";
   for (const Coordinate& coordinate : model.coordinates) {
     const bool depends = coordinate.motion >= 0 || coordinate.mimicked >= 0;

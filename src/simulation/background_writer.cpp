@@ -58,8 +58,8 @@ BackgroundWriter::~BackgroundWriter() {
 
 void BackgroundWriter::write_row(const Simulation& simulation) {
   Entry& entry = step_waits_ ? ring_.free_entry() : next_entry();
-  entry.is_row = entry.has_state = true;
-  entry.state = snapshot_of(simulation);
+  entry.is_row = true;
+  set_state(entry, simulation);
   ring_.push();
   step_waits_ = false;
 }
@@ -71,8 +71,7 @@ void BackgroundWriter::note_step(const Simulation& simulation, const StepResult&
   entry.result = result;
   step_waits_ = true;
   if (!looks_at_steps()) return;  // the step shares an entry with the row after it, which costs less
-  entry.has_state = true;
-  entry.state = snapshot_of(simulation);
+  set_state(entry, simulation);
   push_step();
 }
 
@@ -96,6 +95,12 @@ BackgroundWriter::Entry& BackgroundWriter::next_entry() {
   Entry& entry = ring_.free_entry();
   entry.is_step = entry.is_row = entry.has_state = false;
   return entry;
+}
+
+void BackgroundWriter::set_state(Entry& entry, const Simulation& simulation) {
+  entry.has_state = true;
+  entry.state = snapshot_of(simulation);
+  entry.step_size = simulation.step_size();
 }
 
 /// Reuses the memory that came back last, which is still in the processor's cache. Cycling through all entries of the
@@ -136,6 +141,7 @@ void BackgroundWriter::write_entries() {
 
 void BackgroundWriter::write(Entry& entry) {
   if (entry.has_state) {
+    if (mirror_.step_size() != entry.step_size) set_step(mirror_, entry.step_size, {});
     mirror_.restore(entry.state);
     returned_.free_entry() = std::move(entry.state);
     returned_.push();

@@ -35,11 +35,13 @@ class BackgroundWriter : public ResultWriter {
     StepResult result;                     // of the step
     bool has_state = false;
     Snapshot state;
+    double step_size = 0;  // with a state: of the simulation, which may change it [s]
   };
 
   Entry& next_entry();
   /// Hands over the step that waits for its row, if there is one.
   void push_step();
+  void set_state(Entry& entry, const Simulation& simulation);
   Snapshot snapshot_of(const Simulation& simulation);
   void throw_error();
   void finish();

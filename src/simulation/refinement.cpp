@@ -166,25 +166,29 @@ void require_suitable_refinement(const scene::SceneDescription& scene, const Sch
       if (pair.first == link.name || pair.second == link.name)
         refuse_refinement(
             link, fmt::format("refine=\"true\" is not possible for a beam that may touch something, here '{}' and "
-                              "'{}': its contact points belong to its elements",
+                              "'{}': its contact points belong to its elements. Expected refine=\"false\", or a "
+                              "<no_contact> of these two",
                               pair.first, pair.second));
     for (const scene::JointDescription& joint : scene.joints)
       if (joint.slide && joint.parent == link.name && !scene.loop_joints.empty())
         refuse_refinement(link,
                           fmt::format("refine=\"true\" moves what slides there (joint '{}') a little, which would open "
-                                      "loops: it is not possible in a scene with a <loop_joint>",
+                                      "loops: expected refine=\"false\" in a scene with a <loop_joint>",
                                       joint.name));
     for (const scene::JointDescription& joint : scene.loop_joints)
       if (joint.slide && joint.parent == link.name)
-        refuse_refinement(
-            link, fmt::format("refine=\"true\" is not possible where the <loop_joint> '{}' slides", joint.name));
+        refuse_refinement(link,
+                          fmt::format("refine=\"true\" is not possible where the <loop_joint> '{}' slides, expected "
+                                      "refine=\"false\"",
+                                      joint.name));
   }
 }
 
 void require_constant_mesh(const scene::SceneDescription& scene, const std::string& what) {
   for (const scene::LinkDescription& link : scene.links)
     if (is_refined(link))
-      refuse_refinement(link, "refine=\"true\" changes the mesh while it moves, which " + what + " cannot take along");
+      refuse_refinement(link, "refine=\"true\" changes the mesh while it moves, which " + what +
+                                  " cannot take along: expected refine=\"false\"");
 }
 
 }  // namespace flexarm

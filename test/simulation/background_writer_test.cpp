@@ -40,7 +40,8 @@ class Recorder : public ResultWriter {
   Rows& rows_;
 };
 
-/// Returns the rows that are written every third step of `steps`. The simulation is reset once on the way.
+/// Returns the rows that are written every third step of `steps`. On the way the simulation is reset once, and its steps
+/// become shorter.
 Rows recorded(const scene::SceneDescription& scene, int steps, bool in_background) {
   Rows rows;
   Simulation simulation(scene);
@@ -49,6 +50,7 @@ Rows recorded(const scene::SceneDescription& scene, int steps, bool in_backgroun
   if (in_background) writer = std::make_unique<BackgroundWriter>(simulation, make);
   writer->write_row(simulation);
   for (int n = 0; n < steps; ++n) {
+    if (n == steps / 2) simulation.set_step_size(0.5 * simulation.step_size());
     if (n == 2 * steps / 3) simulation.reset();
     writer->note_step(simulation, simulation.step());
     if (n % 3 == 0) writer->write_row(simulation);
@@ -75,6 +77,13 @@ TEST(BackgroundWriter, WritesTheSameBits) {
     ASSERT_TRUE(read.scene);
     expect_same_rows(*read.scene, 300);
   }
+}
+
+TEST(BackgroundWriter, WritesTheSameBitsOfAnExplicitScheme) {
+  scene::ReadResult read = scene::read_scene_file(source_path("config/examples/rigid_double_pendulum.urdf"));
+  ASSERT_TRUE(read.scene);
+  read.scene->integrator.scheme = "rk4";
+  expect_same_rows(*read.scene, 30);
 }
 
 TEST(BackgroundWriter, WritesWhatSensorsWithNoiseMeasured) {

@@ -13,6 +13,7 @@
 #include "building/model_builder.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/model/model_error.h"
+#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/linear_model.h"
 #include "flexarm/simulation/payloads.h"
@@ -21,6 +22,7 @@
 #include "simulation/inside.h"
 #include "simulation/mesh_change.h"
 #include "support/scene_builder.h"
+#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
@@ -240,6 +242,25 @@ TEST(Refinement, PayloadsComeAndGoOnHalvedElements) {
   EXPECT_FALSE(linearise(simulation, request).states.empty());
 }
 
+// Its force follows the mesh: each node has the length that belongs to it.
+TEST(Refinement, DragActsOnHalves) {
+  SceneBuilder b = flying_rod(true);
+  b.scene.links.back().drag = scene::DragDescription{{0, 1, 1}, 1.2, Vector3(0, 0.05, 0.05)};
+  Simulation simulation(b.scene);
+  const double account = account_of_energy(simulation);
+  double dissipated = 0, largest_energy = 0;
+  for (int n = 0; n < 60; ++n) {
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged) << simulation.explain(result);
+    const Energies e = simulation.energies();
+    largest_energy = std::max(largest_energy, e.kinetic + e.strain);
+    EXPECT_GT(e.dissipated, dissipated) << "step " << n;
+    EXPECT_NEAR(account_of_energy(simulation), account, 100 * simulation.tolerance() * largest_energy) << "step " << n;
+    dissipated = e.dissipated;
+  }
+  EXPECT_GT(halvings(simulation), 0u);
+}
+
 /// A bead that slides along a beam, which is bent far by a moment at its tip.
 SceneBuilder bead_on_beam(int elements, bool refine, double step) {
   SceneBuilder b;
@@ -308,6 +329,27 @@ TEST(Refinement, IsRefusedWhereItIsNotPossible) {
     EXPECT_EQ(refusal(flying_rod(true, scheme).scene), "") << scheme;
   for (const char* scheme : {"m1", "m2", "std", "beta1", "newmark", "hht3"})
     EXPECT_NE(refusal(flying_rod(true, scheme).scene).find("has no <beam refine=\"true\">"), std::string::npos);
+  SceneBuilder closed = bead_on_beam(4, true, 1e-3);
+  closed.body("bar", 0.1, {0, 0, 0}, 1e-5 * Matrix3::Identity());
+  closed.joint("bar_free", JointKind::Floating, "world", "bar", {0.1, 0, 0});
+  closed.scene.initial_links.push_back({"bar", {1, 0, 0}, Vector3::Zero(), {}});
+  scene::JointDescription ball;
+  ball.name = "ball";
+  ball.kind = JointKind::Spherical;
+  ball.parent = "bead";
+  ball.child = "bar";
+  closed.scene.loop_joints.push_back(ball);
+  EXPECT_NE(refusal(closed.scene).find("expected refine=\"false\" in a scene with a <loop_joint>"), std::string::npos)
+      << refusal(closed.scene);
+
+  scene::ReadResult wiper = scene::read_scene_file(source_path("config/examples/wiper.urdf"));
+  ASSERT_TRUE(wiper.scene);
+  for (scene::LinkDescription& link : wiper.scene->links)
+    if (link.beam) link.beam->refine = true;
+  const std::string touching = refusal(*wiper.scene);
+  EXPECT_NE(touching.find("wiper.urdf:"), std::string::npos) << touching;
+  EXPECT_NE(touching.find("may touch something"), std::string::npos) << touching;
+
   Simulation simulation(flying_rod(true).scene);
   RunWatcher watcher;
   EXPECT_THROW(run_to_accuracy(simulation, {0.01, 0.1}, watcher), ModelError);
