@@ -73,8 +73,8 @@ CONTENTS = {
     "docs/validation/README": [("", " ".join(VALIDATION))],
     "docs/theory": [("", "theory/beams theory/joints theory/time_integration theory/statics_and_modes")],
     "docs/notes/README": [
-        ("", """beam joints beyond viscoelastic explicit newton tree planar kernel stops drives lines oil contact
-            linearisation sensitivities accuracy tuning page"""),
+        ("", """beam joints refinement beyond viscoelastic explicit newton tree planar kernel stops drives lines oil
+            contact linearisation sensitivities accuracy tuning page"""),
     ],
 }
 

@@ -14,6 +14,7 @@
 #include "integrators/explicit_step.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
+#include "simulation/refinement.h"
 
 namespace flexarm {
 namespace {
@@ -207,6 +208,7 @@ class TriesOfARun {
 }  // namespace
 
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher) {
+  require_constant_mesh(simulation.scene(), "a run to an accuracy");
   const double step = simulation.step_size(), tolerance = simulation.tolerance();
   AccurateRun run = TriesOfARun(simulation, request, watcher).run();
   simulation.set_step_size(step);

@@ -12,6 +12,7 @@
 #include "integrators/explicit_step.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
+#include "simulation/refinement.h"
 
 namespace flexarm {
 namespace {
@@ -362,6 +363,7 @@ TuningResult Search::result(const std::string& ended) {
 
 TuningResult tune(TrialRuns& trials, const TuningGoal& goal, const TuningFreedom& freedom,
                   const TuningProgress& progress) {
+  require_constant_mesh(trials.scene(), "the search for the best settings");
   Search search(trials, goal, freedom, progress);
   try {
     search.run();

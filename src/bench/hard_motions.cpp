@@ -134,10 +134,15 @@ void add_whips(std::vector<HardCase>& cases) {
   HardGroup group(cases, "whip");
   // Four elements per piece are far too few: the last elements are wound up by more than two turns each.
   const std::string damping = "<damping stiffness_proportional=\"1e-3\"/>";
-  for (const double step : {2e-3, 5e-4})
-    group.add_unsound(fmt::format("tapered, four elements a piece, steps of {:g} s", step), tapered_whip(4), step, 0.6);
+  for (const double step : {2e-3, 5e-4}) {
+    const std::string name = fmt::format("tapered, four elements a piece, steps of {:g} s", step);
+    group.add_unsound(name, tapered_whip(4), step, 0.6);
+    group.add(name + ", refined", refined(tapered_whip(4)), step, 0.6);
+  }
   group.add_unsound("tapered, four elements a piece, damped", tapered_whip(4, damping), 2e-3, 0.6);
+  group.add("tapered, four elements a piece, damped, refined", refined(tapered_whip(4, damping)), 2e-3, 0.6);
   group.add("tapered, 16 elements a piece, through its crack", tapered_whip(16), 5e-4, 0.25);
+  group.add("tapered, four elements a piece, through its crack, refined", refined(tapered_whip(4)), 5e-4, 0.25);
   group.add("tapered, 12 elements a piece, damped", tapered_whip(12, damping), 2e-3, 0.6);
   for (const double step : {0.003, 0.007, 0.014}) {
     group.add(fmt::format("released, steps of {:g} s", step), stretched_whip("0:0 0.05:1 0.3:1 0.31:0"), step, 1);

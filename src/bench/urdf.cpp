@@ -45,6 +45,13 @@ std::string beam(const std::string& name, const Vector3& to, const std::string& 
   return beam_along(name, fmt::format("<line to=\"{}\"/>", triple(to)), section, elements, more, order);
 }
 
+std::string refined(std::string scene) {
+  const std::string tag = "<beam ";
+  for (std::size_t at = scene.find(tag); at != std::string::npos; at = scene.find(tag, at + 1))
+    scene.insert(at + tag.size(), "refine=\"true\" ");
+  return scene;
+}
+
 std::string beam_along(const std::string& name, const std::string& pieces, const std::string& section, int elements,
                        const std::string& more, int order) {
   return fmt::format(

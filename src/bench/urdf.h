@@ -19,6 +19,8 @@ std::string circle(double radius, double young = 2e11, double density = 7800);
 /// A flexible link along a straight line; `more`: other elements of <beam>.
 std::string beam(const std::string& name, const Vector3& to, const std::string& section, int elements,
                  const std::string& more = "", int order = 2);
+/// A scene in which elements of all beams are halved while they are strongly bent.
+std::string refined(std::string scene);
 /// A flexible link along any pieces of a <centerline>.
 std::string beam_along(const std::string& name, const std::string& pieces, const std::string& section, int elements,
                        const std::string& more = "", int order = 2);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <queue>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -100,21 +103,23 @@ std::vector<int> automatic_element_counts(int order, const Centreline& centrelin
   return counts;
 }
 
+/// @throws std::invalid_argument if `count` is more than `most`
+void require_room(double count, int most) {
+  if (count > most)
+    throw std::invalid_argument(fmt::format("its mesh would have {}{} elements, but at most {} are possible here",
+                                            count < kTooMany ? "" : "more than ", std::min<double>(count, kTooMany),
+                                            most));
+}
+
 /// Number of elements for each interval between borders.
 std::vector<int> element_counts(const scene::BeamDescription& beam, const Centreline& centreline,
                                 const std::vector<double>& border, const std::vector<double>& length, int most) {
-  const auto require_room = [&](double sum) {
-    if (sum > most)
-      throw std::invalid_argument(fmt::format("its mesh would have {}{} elements, but at most {} are possible here",
-                                              sum < kTooMany ? "" : "more than ", std::min<double>(sum, kTooMany),
-                                              most));
-  };
   if (beam.elements) {
-    require_room(*beam.elements);
+    require_room(*beam.elements, most);
     return distribute(*beam.elements, length);
   }
   std::vector<int> counts = automatic_element_counts(beam.order, centreline, border, length);
-  require_room(std::accumulate(counts.begin(), counts.end(), 0.0));
+  require_room(std::accumulate(counts.begin(), counts.end(), 0.0), most);
   return counts;
 }
 
@@ -122,6 +127,10 @@ std::vector<int> element_counts(const scene::BeamDescription& beam, const Centre
 
 int automatic_element_count(int order, double turning) {
   return std::max(kFrequencyElements[order], rounded_up(turning / kTurningPerElement[order]));
+}
+
+double turning_per_element(int order) {
+  return kTurningPerElement[order];
 }
 
 int BeamMesh::node_at(double arc_length) const {
@@ -170,21 +179,35 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
     mesh.nodes.push_back({s, pose, welded_to});
     return static_cast<int>(mesh.nodes.size()) - 1;
   };
-  int last = add_node(0, false, -1);
+  std::set<std::pair<int, int>> halved;
+  for (const scene::HalvedPart& part : beam.halved) halved.emplace(part.element, part.part);
+  int last = add_node(0, false, -1), given = 0;
+  const std::function<void(double, double, int)> add_part = [&](double from, double to, int part) {
+    if (halved.count({given, part}) > 0) {
+      const double middle = at_node(from, to, 2, 1);
+      add_part(from, middle, 2 * part);
+      add_part(middle, to, 2 * part + 1);
+      return;
+    }
+    MeshElement element;
+    element.nodes.push_back(last);
+    for (int i = 1; i <= beam.order; ++i)
+      element.nodes.push_back(last = add_node(at_node(from, to, beam.order, i), true, -1));
+    element.end = to;
+    element.part = {given, part};
+    mesh.elements.push_back(element);
+  };
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (k > 0 && centreline.is_kink(border[k])) last = add_node(border[k], false, last);
     for (int e = 0; e < counts[k]; ++e) {
       // The last element ends exactly at the interval's end: slightly beyond a kink, the section has another frame.
       const double from = border[k] + length[k] * e / counts[k];
       const double to = e + 1 < counts[k] ? border[k] + length[k] * (e + 1) / counts[k] : border[k + 1];
-      MeshElement element;
-      element.nodes.push_back(last);
-      for (int i = 1; i <= beam.order; ++i)
-        element.nodes.push_back(last = add_node(at_node(from, to, beam.order, i), true, -1));
-      element.end = to;
-      mesh.elements.push_back(element);
+      add_part(from, to, 1);
+      ++given;
     }
   }
+  require_room(static_cast<double>(mesh.elements.size()), most);
   return mesh;
 }
 

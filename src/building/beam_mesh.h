@@ -22,6 +22,7 @@ struct MeshNode {
 struct MeshElement {
   std::vector<int> nodes;
   double end = 0;  ///< arc length
+  ElementPart part;
 };
 
 struct BeamMesh {
@@ -45,7 +46,11 @@ struct BeamMesh {
 /// meet, and where loads and joints attach.
 int automatic_element_count(int order, double turning);
 
+/// The largest turning of an element in that rule [rad].
+double turning_per_element(int order);
+
 /// Meshes a link with element borders at `attachments` (arc lengths), piece borders and kinks.
+/// Elements are halved as the beam says.
 /// @throws std::invalid_argument if that takes more than `most` elements, or if the centre of mass is not in the same
 /// place in all sections.
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,

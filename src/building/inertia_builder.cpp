@@ -57,6 +57,7 @@ void add_elements(const ScenePlan& plan, int link, Model& model) {
     beam.mass += out.mass.sum();
     beam.elements.push_back(static_cast<int>(group.size()));
     beam.element_ends.push_back(element.end);
+    beam.parts.push_back(element.part);
     group.push_back(out);
   }
 }

@@ -22,6 +22,16 @@ struct BuiltModel {
   std::vector<int> dependent;  ///< they move nothing at the start but what others move as well
 };
 
+std::vector<HalvedElement> halved_elements(const scene::SceneDescription& scene) {
+  std::vector<HalvedElement> halved;
+  for (std::size_t link = 0; link < scene.links.size(); ++link)
+    if (scene.links[link].beam)
+      for (const scene::HalvedPart& part : scene.links[link].beam->halved)
+        halved.push_back({static_cast<int>(link), part.element, part.part});
+  std::sort(halved.begin(), halved.end());
+  return halved;
+}
+
 BuiltModel build(const scene::SceneDescription& scene) {
   const ScenePlan plan(scene);
   PlacedTree placed = place_tree(plan);
@@ -34,6 +44,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   std::vector<Vector6> velocity = initial_velocity(plan, solvable);
   PlacedLoads placed_loads = place_loads(plan, solvable.model);
   Model model = std::move(solvable.model);
+  model.halved = halved_elements(scene);
   model.initial_velocity = std::move(velocity);
   model.loads = std::move(placed_loads.loads);
   model.histories = std::move(placed_loads.histories);

@@ -136,10 +136,12 @@ StepResult Stepper::advance(State& state) {
   return advance(state, Deadline(settings_.recovery_wall_time));
 }
 
-StepResult Stepper::advance_until_release(State& state) {
+StepResult Stepper::advance_until(State& state, const std::function<bool(const State&)>& is_end) {
   ends_at_release_ = may_release_ && !settings_.events.is_on();
+  if (is_end && !settings_.events.is_on()) is_end_ = &is_end;
   StepResult result = advance(state);
   ends_at_release_ = false;
+  is_end_ = nullptr;
   return result;
 }
 
@@ -204,6 +206,7 @@ bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& r
     }
     done += whole >> level;
     if (ends_at_release_ && slide_beyond_end(model_, state) >= 0) break;
+    if (is_end_ && (*is_end_)(state)) break;
     if (is_late && done < whole) return give_up(is_late);
     state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
     // A doubled sub-step must begin at a multiple of its own length.

@@ -1,6 +1,7 @@
 #pragma once
 /// Step control around Newton's method: halves the step after a failure, and doubles it again after successes.
 
+#include <functional>
 #include <memory>
 
 #include "flexarm/model/results.h"
@@ -28,8 +29,9 @@ class Stepper {
   /// The same with a deadline that is already running.
   StepResult advance(State& state, const Deadline& deadline);
   /// The same, but the step ends early, soon after a slider has come to the end of a line that it may leave
-  /// (JointMap::leaving). The caller then changes the model. Steps with a search for events do not end early.
-  StepResult advance_until_release(State& state);
+  /// (JointMap::leaving), or if `is_end` is true after a sub-step; null: never. The caller then changes the model.
+  /// Steps with a search for events do not end early.
+  StepResult advance_until(State& state, const std::function<bool(const State&)>& is_end = nullptr);
   /// What is left of a step that has ended early [s]; 0: nothing.
   double rest() const { return rest_; }
   /// After a step with Reason::EventWithin: time of the event, counted from the beginning of the step [s].
@@ -83,8 +85,9 @@ class Stepper {
   std::unique_ptr<ExplicitStep> explicit_;             // null unless the scheme is explicit
   State before_;                                       // state at the beginning of a composed step, to undo it
   double begin_ = 0, event_ = 0;                       // start of the whole step; time from there to the event [s]
-  double rest_ = 0;                                    // what is left of the step after a slider has left its line [s]
-  bool ends_at_release_ = false;                       // during advance_until_release()
+  double rest_ = 0;                                    // what is left of a step that has ended early [s]
+  bool ends_at_release_ = false;                       // during advance_until()
+  const std::function<bool(const State&)>* is_end_ = nullptr;  // during advance_until()
   StepObserver* observer_ = nullptr;
   StepFollower* follower_ = nullptr;
 };

@@ -80,6 +80,20 @@ struct BeamGroup {
   std::vector<BeamElement<Nodes>> elements;
 };
 
+/// A part of an element of the scene, see scene::HalvedPart.
+struct ElementPart {
+  int element = 0, part = 1;
+};
+/// A part of an element of a link's beam that is divided into two halves.
+struct HalvedElement {
+  int link = 0, element = 0, part = 1;
+  bool operator==(const HalvedElement& other) const { return !(*this < other) && !(other < *this); }
+  bool operator!=(const HalvedElement& other) const { return !(*this == other); }
+  bool operator<(const HalvedElement& other) const {
+    return std::tie(link, element, part) < std::tie(other.link, other.element, other.part);
+  }
+};
+
 using BeamGroups = std::tuple<BeamGroup<2>, BeamGroup<3>, BeamGroup<4>, BeamGroup<5>>;
 
 /// Calls visit(group) for each order. Code that depends on the number of nodes is dispatched only here.

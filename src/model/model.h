@@ -92,6 +92,8 @@ struct BeamLink {
   int order = 2;                     ///< the elements belong to the group with order + 1 nodes
   std::vector<int> elements;         ///< indices into that group
   std::vector<double> element_ends;  ///< arc length at the end of each [m]
+  std::vector<ElementPart> parts;    ///< the part of the scene's element that each is
+  bool refines = false;              ///< elements are halved while they are strongly bent
   Attachment tip;
   Vector3 centroid =
       Vector3::Zero();  ///< mass centroid in the section; nodes are there, so the reference line is at -centroid
@@ -178,6 +180,7 @@ struct Model {
   std::vector<int> node_parents;       ///< per node: the next node towards the root, which carries it along; -1: world
   std::vector<NodalInertia> inertias;  ///< per node
   BeamGroups beams;
+  std::vector<HalvedElement> halved;  ///< in ascending order
   int stiffness_point_count = 0, mass_point_count = 0;
   int maxwell_branches = 0;  ///< the largest number of Maxwell branches of a beam
   JointList joints;

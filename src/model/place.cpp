@@ -21,7 +21,7 @@ Place place_of_element(const Model& model, const State& state, int order, int in
     const auto found = std::find(beam->elements.begin(), beam->elements.end(), index);
     if (found == beam->elements.end()) continue;
     place.link = static_cast<int>(link);
-    place.element = static_cast<int>(found - beam->elements.begin());
+    place.element = beam->parts[found - beam->elements.begin()].element;
   }
   return place;
 }

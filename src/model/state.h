@@ -7,6 +7,7 @@
 #include "flexarm/model/results.h"
 #include "math/local_rotation.h"
 #include "model/actuator.h"
+#include "model/beam_element.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
 #include "model/nodal_load.h"
@@ -56,12 +57,13 @@ using StrainMemory = StrainMemoryT<double>;
 using PointRotation = InterpolatedRotation<double>;
 
 struct State {
-  double time = 0;                   ///< [s]
-  Vector3 origin = Vector3::Zero();  ///< origin of nodes' positions and of translations of free joints on the world,
-                                     ///< relative to Model::origin; constant unless Model::floats [m]
-  std::vector<NodeState> nodes;      ///< including slaves
-  std::vector<Released> released;    ///< per elementary joint
-  std::vector<int> left_lines;       ///< slides that have left their lines, in order of time
+  double time = 0;                    ///< [s]
+  Vector3 origin = Vector3::Zero();   ///< origin of nodes' positions and of translations of free joints on the world,
+                                      ///< relative to Model::origin; constant unless Model::floats [m]
+  std::vector<NodeState> nodes;       ///< including slaves
+  std::vector<Released> released;     ///< per elementary joint
+  std::vector<int> left_lines;        ///< slides that have left their lines, in order of time
+  std::vector<HalvedElement> halved;  ///< those of the model, in ascending order
   std::vector<MassPointState> mass_points;
   std::vector<Vector6> strain_rates;  ///< per stiffness point; Newmark family with damping only
   /// Per stiffness point, Model::maxwell_branches each: strains of the branches' springs [-, 1/m].

@@ -12,7 +12,7 @@ constexpr const char* kDuration = "the duration of a past step";
 
 /// Calls `visit(what, number)` for every floating-point number of a state, in a fixed order. `what`: name of the
 /// quantity for messages. Integers are not visited: halving_level, good_steps, steps, the counts and order of
-/// histories, left_lines.
+/// histories, left_lines, halved.
 template <class AnyState, class Visit>
 void for_each_number(AnyState& state, const Visit& visit) {
   const auto vector = [&](const char* what, auto& v) {

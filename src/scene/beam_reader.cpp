@@ -122,11 +122,19 @@ void read_orientation(const XmlElement& beam, const std::optional<Vector3>& tang
     orientation->attribute_error("y", "y must not be parallel to the centreline's first tangent");
 }
 
+constexpr Choice<bool> kRefines[] = {{"true", true}, {"false", false}};
+
 void read_mesh(const XmlElement& beam, BeamDescription& description) {
   const char* elements = beam.xml().Attribute("elements");
   if (elements && std::string_view(elements) != "auto")
     description.elements = beam.integer("elements", 0, kMostBeamElements, " or 'auto'");
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
+  description.refine = read_choice(beam, "refine", kRefines, false);
+  if (!description.refine) return;
+  if (description.order != 2)
+    beam.attribute_error("refine",
+                         fmt::format("elements of order 2 can be halved, not those of order {}", description.order));
+  if (description.elements == 0) beam.attribute_error("refine", "a rigid beam has no elements that could be halved");
 }
 
 constexpr Choice<HubDescription::End> kHubEnds[] = {{"start", HubDescription::End::Start},
@@ -223,7 +231,7 @@ void read_prestrain(const XmlElement& prestrain, BeamDescription& description) {
 std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::string& link) {
   const XmlElement beam = unowned.with_owner("beam " + quoted(link));
   const std::size_t errors = beam.findings().error_count();
-  beam.expect_only({"elements", "order"},
+  beam.expect_only({"elements", "order", "refine"},
                    {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube", "material", "section",
                     "section_matrix", "stations", "damping", "prestrain", "hub"});
   beam.expect_at_most_one({"centerline", "orientation", "material", "stations", "damping", "prestrain"});

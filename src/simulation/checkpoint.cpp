@@ -37,9 +37,9 @@ std::string checksum_line(const std::string& text) {
 
 /// What must agree for a state to fit a simulation: as text, one item per line, and as named values.
 SceneIdentity identity(const Simulation& simulation) {
-  const State& state = state_of(simulation);
+  const State& state = initial_state_of(simulation);  // before elements were halved and sliders left their lines
   SceneIdentity out = identity_of(simulation.scene(), scheme_of(simulation));
-  const std::pair<const char*, std::size_t> counts[] = {{"nodes", state.nodes.size() - state.left_lines.size()},
+  const std::pair<const char*, std::size_t> counts[] = {{"nodes", state.nodes.size()},
                                                         {"joints", state.released.size()},
                                                         {"mass_points", state.mass_points.size()},
                                                         {"coordinates", state.commands.size()}};
@@ -198,6 +198,8 @@ class Reader {
   int number_ = 0;
 };
 
+constexpr const char* kHalved = "halved ";  // the elements that are halved, by link, element and part
+
 /// Nodes and links on which wrenches act. Empty if there are no wrenches.
 std::string wrenches_text(const std::vector<NodalLoad>& wrenches) {
   if (wrenches.empty()) return "";
@@ -206,6 +208,14 @@ std::string wrenches_text(const std::vector<NodalLoad>& wrenches) {
   text += " on";
   for (const NodalLoad& wrench : wrenches) text += fmt::format(" {}", wrench.link);
   return text;
+}
+
+/// Written only if elements are halved.
+std::string halved_line(const State& state) {
+  if (state.halved.empty()) return "";
+  std::string text = fmt::format("{}{}", kHalved, state.halved.size());
+  for (const HalvedElement& one : state.halved) text += fmt::format(" {} {} {}", one.link, one.element, one.part);
+  return text + "\n";
 }
 
 std::string counts_line(const State& state) {
@@ -217,9 +227,19 @@ std::string counts_line(const State& state) {
          (state.samples.empty() ? "" : fmt::format("transmitted {}\n", state.transmitted.count));
 }
 
-/// Reads the whole numbers, and resizes the state's lists accordingly.
-void read_counts(Reader& reader, State& state) {
-  const std::string line = reader.next();
+std::vector<HalvedElement> read_halved(Reader& reader, const std::string& line) {
+  std::istringstream in(line);
+  std::string word;
+  std::size_t count = 0;
+  in >> word >> count;
+  std::vector<HalvedElement> halved(in && count <= line.size() ? count : 0);
+  for (HalvedElement& one : halved) in >> one.link >> one.element >> one.part;
+  if (!in || halved.empty()) reader.fail_line(line, "the elements that are halved");
+  return halved;
+}
+
+/// Reads the whole numbers from `line`, and resizes the state's lists accordingly.
+void read_counts(Reader& reader, const std::string& line, State& state) {
   std::istringstream in(line);
   std::string word;
   IncrementHistory& history = state.history;
@@ -254,8 +274,9 @@ void read_counts(Reader& reader, State& state) {
 
 std::string checkpoint_text(const Simulation& simulation) {
   const SceneIdentity scene = identity(simulation);
-  std::string text = fmt::format("{}\n{}{}", kHeader, scene.text, counts_line(state_of(simulation)));
-  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  const State& state = state_of(simulation);
+  std::string text = fmt::format("{}\n{}{}{}", kHeader, scene.text, halved_line(state), counts_line(state));
+  for_each_number(state, [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
   text += file_line(simulation.scene()) + values_text(scene.values);
   return text + checksum_line(text);
 }
@@ -285,20 +306,30 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
 void read_checkpoint_text(Simulation& simulation, const std::string& text, const std::string& name) {
   Reader reader(text, name);
   reader.require_identity(identity(simulation));
-  State state = state_of(simulation);
-  read_counts(reader, state);
-  for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
-  reader.take_end();
   const Snapshot before = simulation.snapshot();
   try {
+    std::string line = reader.next();
+    std::vector<HalvedElement> halved;
+    if (line.rfind(kHalved, 0) == 0) {
+      halved = read_halved(reader, line);
+      line = reader.next();
+    }
+    if (halved != state_of(simulation).halved) take_mesh(simulation, halved);
+    State state = state_of(simulation);
+    read_counts(reader, line, state);
+    for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
+    reader.take_end();
     restore(simulation, state);
+    const Energies energies = simulation.energies();
+    if (!std::isfinite(energies.total() + energies.work + energies.dissipated))
+      throw std::invalid_argument("not a state of this scene: its energies are not finite");
   } catch (const std::invalid_argument& error) {
+    simulation.restore(before);
     reader.fail(error.what());
+  } catch (...) {
+    simulation.restore(before);
+    throw;
   }
-  const Energies energies = simulation.energies();
-  if (std::isfinite(energies.total() + energies.work + energies.dissipated)) return;
-  simulation.restore(before);
-  reader.fail("not a state of this scene: its energies are not finite");
 }
 
 bool is_checkpoint(const std::string& path) {

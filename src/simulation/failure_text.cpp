@@ -40,6 +40,16 @@ std::string place_and_amount(const Model& model, const Failure& failure) {
                      r.z());
 }
 
+/// Number of elements that the scene gives the beam, however they are halved now.
+int element_count(const BeamLink& beam) {
+  return beam.parts.back().element + 1;
+}
+
+std::string bending_advice(const BeamLink& beam) {
+  return fmt::format("a finer mesh of that link: {} elements or more{}", 2 * element_count(beam),
+                     beam.order == 2 && !beam.refines ? ", or refine=\"true\" of its <beam>" : "");
+}
+
 std::string advice(const Model& model, const StepResult& result) {
   const Failure& failure = result.failure;
   switch (result.reason) {
@@ -79,8 +89,7 @@ std::string advice(const Model& model, const StepResult& result) {
     case Reason::OutOfTime:
       return "continuing from here, which takes as much time again, a smaller step, or a longer recovery_wall_time";
     case Reason::BentTooFar:
-      return fmt::format("a finer mesh of that link: {} elements or more",
-                         2 * model.links[failure.place.link].beam->elements.size());
+      return bending_advice(*model.links[failure.place.link].beam);
   }
   return "";
 }
@@ -111,7 +120,7 @@ std::string place_name(const Model& model, const StepResult::Place& place) {
   if (place.link < 0) return "";
   const LinkFrame& link = model.links[place.link];
   if (place.element < 0) return fmt::format("link '{}'", link.name);
-  return fmt::format("element {} of {} of link '{}'", place.element + 1, link.beam->elements.size(), link.name);
+  return fmt::format("element {} of {} of link '{}'", place.element + 1, element_count(*link.beam), link.name);
 }
 
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result) {

@@ -1,6 +1,9 @@
 #pragma once
 /// The private data of a Simulation.
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,8 +25,10 @@
 #include "simulation/failure_text.h"
 #include "simulation/joint_state.h"
 #include "simulation/loop_velocities.h"
+#include "simulation/mesh_change.h"
 #include "simulation/observables.h"
 #include "simulation/published_motion.h"
+#include "simulation/refinement.h"
 #include "simulation/sensors.h"
 #include "simulation/settings.h"
 #include "simulation/start.h"
@@ -38,7 +43,9 @@ struct Simulation::Implementation {
   StepSettings settings;
   std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
   Model model;
-  std::unique_ptr<const Model> built;  ///< set once a slider has left its line: the model as the scene describes it
+  /// Set once a slider has left its line or elements were halved: the model as the scene describes it.
+  std::unique_ptr<const Model> built;
+  bool is_refined;  ///< whether elements may be halved
   std::unique_ptr<Stepper> stepper;
   std::shared_ptr<const State> initial;  ///< shared by this simulation and its copies
   State state;
@@ -48,6 +55,8 @@ struct Simulation::Implementation {
   mutable PublishedMotion published;
   mutable std::optional<Energies> energies;
   mutable std::optional<Momenta> momenta;
+  State before_part;                       // if elements may be halved: at the beginning of a part of a step
+  double rest_before_part = 0;             // what was left of the step there [s]
   std::vector<NodalLoad> placed_wrenches;  // scratch
   std::vector<double> static_norms;        // update norms of the last solve for an equilibrium; empty after steps
   scene::Diagnostics start_warnings;
@@ -61,10 +70,12 @@ struct Simulation::Implementation {
         first_integrator(scene.integrator),
         settings(settings_of(scene, options)),
         model(build_model(scene, &rigid_lines)),
+        is_refined(refines(model)),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
         state(initial_state(model)),
         start_warnings(std::move(placed.warnings)) {
     require_suitable_slides(scene, scheme);
+    require_suitable_refinement(scene, scheme, model);
     for (scene::Diagnostic& held : held_joints(scene, model)) start_warnings.push_back(std::move(held));
     for (scene::Diagnostic& doubt : doubts_about_scheme(scene, model, scheme))
       start_warnings.push_back(std::move(doubt));
@@ -96,6 +107,7 @@ struct Simulation::Implementation {
         rigid_lines(other.rigid_lines),
         model(other.model),
         built(other.built ? std::make_unique<const Model>(*other.built) : nullptr),
+        is_refined(other.is_refined),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(other.initial),
         state(other.state),
@@ -148,15 +160,20 @@ struct Simulation::Implementation {
     return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
   }
 
-  /// Makes a step. Sliders that leave their lines in it become free at that time.
+  /// Makes a step. Sliders that leave their lines in it become free at that time, and elements that are strongly bent
+  /// are halved.
   StepResult advance() {
     const double end = state.time + settings.step;
-    StepResult result = stepper->advance_until_release(state);
+    if (is_refined) {
+      if (state.steps % kStepsBetweenJoins == 0) join_straight();
+      before_part = state;
+      rest_before_part = settings.step;
+    }
+    StepResult result = advance_part();
     double rest = stepper->rest();
-    while (release_from_lines() && rest > 0) {
-      state.halving_level = state.good_steps = 0;
+    while (change_model(result, rest) && rest > 0) {
       stepper->set_step(rest, settings.events);
-      StepResult last = stepper->advance_until_release(state);
+      StepResult last = advance_part();
       last.add_effort(result);
       result = last;
       rest = stepper->rest();
@@ -164,6 +181,68 @@ struct Simulation::Implementation {
       if (result.converged && rest == 0) state.time = end;
     }
     return result;
+  }
+
+  StepResult advance_part() {
+    if (!is_refined) return stepper->advance_until(state);
+    return stepper->advance_until(state,
+                                  [this](const State& now) { return bending_of(model, now) != Bending::Little; });
+  }
+
+  /// Changes the model if the part of a step that has ended with `result` requires it. Returns whether it does.
+  /// `rest`: what is left of the step [s]; on output more if the part has to be repeated with elements halved.
+  bool change_model(const StepResult& result, double& rest) {
+    const bool is_released = release_from_lines();
+    if (is_released && rest > 0) state.halving_level = state.good_steps = 0;
+    return halve_bent(result, rest) || is_released;
+  }
+
+  bool halve_bent(const StepResult& result, double& rest) {
+    const Bending bending = is_refined ? bending_of(model, state) : Bending::Little;
+    if (bending == Bending::Little || result.reason == StepResult::Reason::OutOfTime) return false;
+    const std::vector<HalvedElement> halved = with_bent_halved(model, state);
+    const bool goes_on = bending == Bending::Strong && result.converged;
+    if (goes_on) {
+      const double sub_step = std::ldexp(rest_before_part, -state.halving_level);
+      before_part = state;
+      before_part.halving_level = rest > sub_step ? static_cast<int>(std::ceil(std::log2(rest / sub_step))) : 0;
+      rest_before_part = rest;
+    }
+    go_on_with_mesh(halved, before_part);
+    before_part = state;
+    rest = rest_before_part;
+    return true;
+  }
+
+  /// Joins halves that are nearly straight: as many as the energy allows, the straightest ones first.
+  void join_straight() {
+    const std::vector<HalvedElement> straight = straight_elements(model, state);
+    if (straight.empty()) return;
+    before_part = state;
+    const Energies before = flexarm::energies(model, scheme, state);
+    for (std::size_t count = straight.size(); count > 0; count /= 2) {
+      std::vector<HalvedElement> rest;
+      const auto joined_end = straight.begin() + static_cast<std::ptrdiff_t>(count);
+      std::copy_if(
+          before_part.halved.begin(), before_part.halved.end(), std::back_inserter(rest),
+          [&](const HalvedElement& one) { return std::find(straight.begin(), joined_end, one) == joined_end; });
+      go_on_with_mesh(rest, before_part);
+      if (is_small_change(before, flexarm::energies(model, scheme, state))) return;
+    }
+    set_state(before_part);
+  }
+
+  /// Continues `begin`, a state of the present model or of that before sliders left their lines, with these halvings.
+  void go_on_with_mesh(const std::vector<HalvedElement>& halved, const State& begin) {
+    fit_to_state(begin);
+    const Model before = model;
+    State wanted;
+    wanted.halved = halved;
+    wanted.left_lines = begin.left_lines;
+    wanted.released = begin.released;
+    fit_to_state(wanted);
+    state = on_changed_mesh(before, begin, model, scheme);
+    make_room();
   }
 
   /// Frees the sliders that are beyond the end of a line that they may leave. Returns whether there was one.
@@ -183,13 +262,21 @@ struct Simulation::Implementation {
     stepper = std::make_unique<Stepper>(model, scheme, settings);
   }
 
-  /// Makes the model one in which the same sliders as in `other` have left their lines.
+  /// Makes the model one in which the same elements as in `other` are halved, and the same sliders have left their
+  /// lines.
   void fit_to_state(const State& other) {
-    if (other.left_lines == state.left_lines) return;
-    Model changed = built ? *built : model;
+    const bool is_same_mesh = other.halved == model.halved;
+    if (is_same_mesh && other.left_lines == state.left_lines) return;
+    if (!is_same_mesh) {
+      set_halved(other.halved, scene);
+      built = std::make_unique<const Model>(build_model(scene));
+    } else if (!built) {
+      built = std::make_unique<const Model>(model);
+    }
+    Model changed = *built;
     for (const int slide : other.left_lines) changed = model_after_release(std::move(changed), other, slide);
-    if (!built) built = std::make_unique<const Model>(model);
     set_model(std::move(changed));
+    state.left_lines = other.left_lines;
   }
 
   void set_state(const State& other) {
@@ -242,9 +329,27 @@ struct Simulation::Implementation {
   }
 
   void restore(const State& other) {
-    const std::string flaw = state_flaw(built ? *built : model, *initial, finest_halving(settings), other);
-    if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
+    std::string flaw = halving_flaw(model, other.halved);
+    const bool is_other_mesh = flaw.empty() && other.halved != model.halved;
+    const State kept = is_other_mesh ? state : State();
+    if (is_other_mesh) take_mesh(other.halved);
+    const Model& whole = built ? *built : model;
+    if (flaw.empty())
+      flaw = state_flaw(whole, whole.halved == initial->halved ? *initial : sized_for(whole, *initial),
+                        finest_halving(settings), other);
+    if (!flaw.empty()) {
+      if (is_other_mesh) set_state(kept);
+      throw std::invalid_argument("not a state of this scene: " + flaw);
+    }
     set_state(other);
+  }
+
+  /// Sets a meaningless state of a mesh with these halvings, see halving_flaw().
+  void take_mesh(const std::vector<HalvedElement>& halved) {
+    State other = *initial;
+    other.halved = halved;
+    fit_to_state(other);
+    set_state(sized_for(model, *initial));
   }
 };
 

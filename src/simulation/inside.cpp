@@ -107,6 +107,12 @@ void restore(Simulation& simulation, const State& state) {
   Inside::of(simulation).restore(state);
 }
 
+void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved) {
+  auto& inside = Inside::of(simulation);
+  if (const std::string flaw = halving_flaw(inside.model, halved); !flaw.empty()) throw std::invalid_argument(flaw);
+  inside.take_mesh(halved);
+}
+
 void set_step(Simulation& simulation, double step, const EventSearch& events) {
   Inside::of(simulation).set_step(step, events);
 }

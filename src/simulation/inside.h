@@ -63,6 +63,10 @@ State start_at(const Simulation& simulation, const MechanismMotion& motion);
 /// @throws std::invalid_argument if it is not a state of this simulation, which then stays as it is
 void restore(Simulation& simulation, const State& state);
 
+/// Gives the simulation a meaningless state of a mesh with these halvings, whose lists have the right sizes.
+/// @throws std::invalid_argument if its beams cannot be halved like this; it then stays as it is
+void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved);
+
 /// Sets the length of the next steps [s], whatever the sample times of servos, and how they look for events.
 void set_step(Simulation& simulation, double step, const EventSearch& events);
 /// For a step that ended as StepResult::Reason::EventWithin: time of the event from the beginning of the step [s].

@@ -75,24 +75,34 @@ struct DeformedElement {
   std::array<Vector6, Nodes - 1> strains, resultants;
 };
 
-/// Calls `visit(deformed element, xi, arc length of the element's beginning, of its end)` for every node of a beam, and
-/// for `between` points inside each pair of neighbouring nodes.
+/// Calls `visit(deformed element, xi, arc length of the element's beginning, of its end)` for every node of the scene's
+/// elements, and for `between` points inside each pair of neighbouring nodes. These points are the same however
+/// elements are halved now.
 template <class Visit>
 void visit_points(const Model& model, const State& state, const BeamLink& beam, int between, const Visit& visit) {
-  double begin = 0;
-  for (std::size_t e = 0; e < beam.elements.size(); ++e) {
-    const double end = beam.element_ends[e];
-    visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
-      constexpr int N = std::decay_t<decltype(element)>::kNodes;
-      const DeformedElement<N> deformed(model, element, state);
-      const int steps = (N - 1) * (between + 1);
-      for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
-        const int pair = std::min(k / (between + 1), N - 2);
-        const double left = node_coordinate<N>(pair), right = node_coordinate<N>(pair + 1);
-        visit(deformed, left + (right - left) * (k - pair * (between + 1)) / (between + 1), begin, end);
-      }
-    });
-    begin = end;
+  for (std::size_t first = 0, behind = 0; first < beam.elements.size(); first = behind) {
+    while (behind < beam.parts.size() && beam.parts[behind].element == beam.parts[first].element) ++behind;
+    const auto begin_of = [&](std::size_t e) { return e == 0 ? 0.0 : beam.element_ends[e - 1]; };
+    const double begin = begin_of(first), end = beam.element_ends[behind - 1];
+    const int nodes = beam.order + 1, steps = beam.order * (between + 1);
+    int k = first == 0 ? 0 : 1;  // the number of the next point
+    for (std::size_t e = first; e < behind; ++e)
+      visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
+        constexpr int N = std::decay_t<decltype(element)>::kNodes;
+        const DeformedElement<N> deformed(model, element, state);
+        const double from = begin_of(e), to = beam.element_ends[e];
+        for (; k <= steps; ++k) {
+          const int pair = std::min(k / (between + 1), N - 2);
+          const double left = node_coordinate(nodes, pair), right = node_coordinate(nodes, pair + 1);
+          double xi = left + (right - left) * (k - pair * (between + 1)) / (between + 1);
+          if (behind - first > 1) {  // from the whole element to its part
+            const double at = begin + 0.5 * (1 + xi) * (end - begin);
+            if (e + 1 < behind && at > to + 1e-12 * (end - begin)) return;
+            xi = 2 * (at - from) / (to - from) - 1;
+          }
+          visit(deformed, xi, from, to);
+        }
+      });
   }
 }
 
@@ -223,6 +233,7 @@ State initial_state(const Model& model, double time) {
     node.angular_velocity = node.orientation.conjugate() * Vector3(model.initial_velocity[i].tail<3>());
   }
   state.origin = model.initial_origin;
+  state.halved = model.halved;
   state.released = model.initial_released;
   state.mass_points.resize(model.mass_point_count);
   state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());

@@ -7,11 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "building/model_builder.h"
 #include "model/carried_origin.h"
 #include "simulation/impact.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/rebuilt.h"
+#include "simulation/refinement.h"
 #include "simulation/scene_edits.h"
 
 namespace flexarm {
@@ -33,15 +35,16 @@ struct JointPlace {
   Pose origin, child_origin;  ///< the joint's frame relative to each link, undeformed
 };
 
-/// Nodes at the borders between a beam's elements, and at its ends.
+/// Nodes at the borders between a beam's elements as the scene gives them, and at its ends.
 std::vector<int> borders_of(const Model& model, const BeamLink& beam) {
   std::vector<int> borders;
   for_each_group(model.beams, [&](const auto& group) {
     if (std::decay_t<decltype(group)>::kNodes != beam.order + 1) return;
-    for (const int element : beam.elements) {
-      const auto& nodes = group.elements[element].nodes;
+    for (std::size_t k = 0; k < beam.elements.size(); ++k) {
+      const auto& nodes = group.elements[beam.elements[k]].nodes;
       if (borders.empty()) borders.push_back(nodes.front());
-      borders.push_back(nodes.back());
+      if (k + 1 == beam.parts.size() || beam.parts[k + 1].element != beam.parts[k].element)
+        borders.push_back(nodes.back());
     }
   });
   return borders;
@@ -68,9 +71,18 @@ JointPlace place_on(const Simulation& simulation, std::size_t parent, std::size_
   return {{node, section}, origin, attached_pose(state, model.links[child].frame).inverse() * now};
 }
 
+/// The model of the simulation's initial state, in which other elements may be halved than now.
+Model initial_model_of(const Simulation& simulation) {
+  const std::vector<HalvedElement>& halved = initial_state_of(simulation).halved;
+  if (model_of(simulation).halved == halved) return model_of(simulation);
+  scene::SceneDescription scene = simulation.scene();
+  set_halved(halved, scene);
+  return build_model(scene);
+}
+
 /// Pose and velocity of a link at the start.
 scene::LinkStart start_of(const Simulation& simulation, std::size_t index) {
-  const Model& model = model_of(simulation);
+  const Model model = initial_model_of(simulation);
   const State& state = initial_state_of(simulation);
   const Attachment& frame = model.links[index].frame;
   scene::LinkStart start{attached_pose(state, frame)};

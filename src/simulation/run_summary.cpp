@@ -47,7 +47,8 @@ RunSummary::RunSummary(const Simulation& simulation)
 void RunSummary::count(const Simulation& simulation, const StepResult& result) {
   counts_.add(result);
   if (result.largest_rotation > rotation_.amount)
-    rotation_ = {result.largest_rotation, simulation.time(), result.turning_node, 0};
+    rotation_ = {result.largest_rotation, simulation.time(), -1, 0,
+                 place_of_node(model_of(simulation), state_of(simulation), result.turning_node)};
 }
 
 void RunSummary::look(const Simulation& simulation) {
@@ -56,20 +57,19 @@ void RunSummary::look(const Simulation& simulation) {
   for (std::size_t link = 0; link < links.size(); ++link) {
     if (!links[link].beam) continue;
     const EdgeStrain strain = largest_edge_strain(model_of(simulation), state_of(simulation), *links[link].beam);
-    if (strain.amount > strain_.amount) strain_ = {strain.amount, time, static_cast<int>(link), strain.arc_length};
+    if (strain.amount > strain_.amount) strain_ = {strain.amount, time, static_cast<int>(link), strain.arc_length, {}};
   }
   const Energies e = simulation.energies();
   energy_scale_ = std::max(
       {energy_scale_, e.kinetic, e.strain, std::abs(e.potential - start_.potential), std::abs(e.work - start_.work)});
   const double defect = std::abs(account(e) - account(start_));
-  if (defect > energy_.amount) energy_ = {defect, time, -1, 0};
+  if (defect > energy_.amount) energy_ = {defect, time, -1, 0, {}};
 }
 
 std::string RunSummary::rotation_warning(const Simulation& simulation) const {
   const double angle = 2 * std::atan(0.5 * rotation_.amount);
   if (angle <= kLargestRotation) return "";
-  const std::string place =
-      place_name(model_of(simulation), place_of_node(model_of(simulation), state_of(simulation), rotation_.index));
+  const std::string place = place_name(model_of(simulation), rotation_.place);
   const double lag = 1 - angle / rotation_.amount;
   return fmt::format(
       "{} turned by up to {:.2g} rad in the step to t = {:.6g} s: free rotations are {:.2g} % too slow there; use a "

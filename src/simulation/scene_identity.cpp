@@ -130,10 +130,11 @@ class SceneParts {
   }
   void add(const scene::HubDescription& hub) { all("end", hub.end, "mass", hub.mass, "inertia", hub.inertia); }
   void add(const scene::BeamDescription& beam) {
-    const auto& [elements, order, centreline, section_y, section, stiffness_damping, damping_shares, mass_damping,
-                 maxwell, prestrain, hubs, location] = beam;
+    const auto& [elements, order, refine, halved, centreline, section_y, section, stiffness_damping, damping_shares,
+                 mass_damping, maxwell, prestrain, hubs, location] = beam;
     all("elements", elements, "order", order, "centreline", centreline, "section_y", section_y, "section", section,
         "stiffness_damping", stiffness_damping, "mass_damping", mass_damping, "hubs", hubs);
+    if (refine) all("refine", refine);
     if (damping_shares != Vector6::Ones()) all("damping_shares", damping_shares);
     for (const auto& [modulus_ratio, relaxation_time] : maxwell)
       all("modulus_ratio", modulus_ratio, "relaxation_time", relaxation_time);

@@ -70,11 +70,14 @@ class Sensitivities::Implementation {
     if (simulation.time() != time || state_of(simulation).steps != count)
       throw std::logic_error("the simulation was moved by other means since the last step of its sensitivities");
     const std::vector<int> lines = state_of(simulation).left_lines;
+    const std::vector<HalvedElement> halved = state_of(simulation).halved;
     accompany(simulation, &steps);
     StepResult result = simulation.step();
     const State& state = state_of(simulation);
     if (state.left_lines != lines)
       steps.lose(fmt::format("a slider has left its line before t = {:.9g} s", simulation.time()));
+    else if (state.halved != halved)
+      steps.lose(fmt::format("elements were halved or joined before t = {:.9g} s", simulation.time()));
     else
       accompany(simulation, nullptr);
     if (!result.converged || result.is_dissipated)

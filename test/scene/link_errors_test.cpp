@@ -111,7 +111,7 @@ TEST(BeamErrors, Structure) {
   expect_error(R"(<orientation y="0 2 0"/>)", R"(<orientation y="0 2 0"/><foo/>)", 33,
                "<foo> of beam 'forearm': unknown element, expected centerline, orientation");
   expect_error(R"(order="3")", R"(degree="3")", 28,
-               "<beam> of link 'forearm': unknown attribute, expected elements, order, got 'degree'");
+               "<beam> of link 'forearm': unknown attribute, expected elements, order, refine, got 'degree'");
   expect_error(R"(<orientation y="0 2 0"/>)", "text", 33, "no text is expected here, got 'text'");
   expect_error(R"(<orientation y="0 2 0"/>)", R"(<damping mass_proportional="1"/>)", 36, "at most one <damping>");
   expect_error(R"(<tube outer)", R"(<tube colour="red" outer)", 34,

@@ -290,6 +290,18 @@ TEST_F(Allocation, NoneWhereSlidersEnterElements) {
   EXPECT_EQ(borders, 7);
 }
 
+// Only steps in which elements are halved or joined allocate memory.
+TEST_F(Allocation, NoneWhereElementsMayBeHalved) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}}, section(1e5, 4e4, 0.8, 1, 1, 2e-5, 1e-5), 4, 2).refine = true;
+  b.joint("clamp", scene::JointKind::Fixed, "world", "arm");
+  b.load("arm", {1, 0, 0}, {0, 0, 0.5});
+  b.scene.integrator.step = 0.005;
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.step().converged);
+  expect_none_after_the_first_step(simulation, 200, [](const StepResult& result) { EXPECT_TRUE(result.converged); });
+}
+
 // Hits that need halved steps evaluate the rates at the beginning of the step.
 TEST_F(Allocation, NoneWhereStopsAreHitFast) {
   for (const char* scheme : {"em", "newmark"}) {

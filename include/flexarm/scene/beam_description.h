@@ -88,10 +88,18 @@ struct MaxwellElement {
   double relaxation_time = 0;  ///< in which its stress decays by the factor e at constant strain [s]
 };
 
+/// A part of an element that is divided into two halves. Part 1 is the whole element, as the scene gives it; the halves
+/// of part k are the parts 2k and 2k + 1.
+struct HalvedPart {
+  int element = 0, part = 1;
+};
+
 /// The beam of a flexible link.
 struct BeamDescription {
-  std::optional<int> elements;  ///< number of elements; empty: chosen automatically; 0: the beam is rigid
-  int order = 2;                ///< 1..4, nodes per element minus one
+  std::optional<int> elements;     ///< number of elements; empty: chosen automatically; 0: the beam is rigid
+  int order = 2;                   ///< 1..4, nodes per element minus one
+  bool refine = false;             ///< whether elements are halved while they are strongly bent
+  std::vector<HalvedPart> halved;  ///< the parts that are halved now, with all parts that contain them
   std::vector<CentrelinePiece> centreline;
   std::optional<Vector3> section_y;  ///< section's y axis at arc length 0, in the link frame; empty: a default axis
   Section section;

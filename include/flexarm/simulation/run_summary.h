@@ -32,8 +32,9 @@ class RunSummary {
  private:
   struct Largest {
     double amount = 0, time = 0;
-    int index = -1;         // of the node or link
-    double arc_length = 0;  // position of the largest strain [m]
+    int index = -1;                // of the link
+    double arc_length = 0;         // position of the largest strain [m]
+    StepResult::Place place = {};  // of the node that turned most
   };
   static double account(const Energies& energies) { return energies.total() - energies.work + energies.dissipated; }
   std::string rotation_warning(const Simulation& simulation) const;

@@ -67,7 +67,8 @@ class Simulation {
   const scene::Diagnostics& start_warnings() const;
 
   /// Advances by one step, in smaller sub-steps if Newton's method needs them. After a failure the state is that after
-  /// the last good sub-step. After the first call, steps allocate memory only when a slider enters another element.
+  /// the last good sub-step. After the first call, steps allocate memory only when a slider enters another element, and
+  /// when elements of a beam with refine="true" are halved or joined.
   StepResult step();
   /// Explains why a step failed: the reason, at which element or joint, where and when, what was tried, and what
   /// usually helps. The result is one line with several sentences. Empty if the step did not fail.
@@ -226,7 +227,7 @@ class Simulation {
   /// @throws std::invalid_argument if `count` < 1; std::runtime_error if the eigenvalue problem cannot be solved.
   std::vector<Mode> natural_modes(int count) const;
 
-  std::size_t node_count() const;
+  std::size_t node_count() const;          ///< changes when elements are halved or joined
   std::size_t degrees_of_freedom() const;  ///< unknowns of the Newton iteration
 
  private:
