@@ -227,7 +227,7 @@ class MeshChange {
   const Scheme& scheme_;
   State out_;
   const int branches_ = new_.maxwell_branches;  // per stiffness point
-  std::vector<int> old_nodes_;  // per node: the old one, or -1
+  std::vector<int> old_nodes_;                  // per node: the old one, or -1
   std::vector<Chain> chains_;
   std::set<int> changed_;  // nodes of elements that were halved or joined
 };
