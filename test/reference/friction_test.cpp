@@ -277,7 +277,7 @@ TEST(StaticFriction, HoldsUntilItBreaksAway) {
     run(simulation, 500);
     ASSERT_GT(simulation.velocity(0), 0.1) << scheme;
     simulation.command_effort(0, 3.5);  // enough for a block that slides
-    run(simulation, 1);                 // in which schemes of the Newmark family have the mean of both efforts
+    run(simulation, 5);                 // published velocities come from the last steps, which the change has left then
     const double speed = simulation.velocity(0);
     run(simulation, 100);
     EXPECT_NEAR(simulation.velocity(0) - speed, 0.1 * 0.5 / kBlockMass, tolerance) << scheme;
@@ -286,7 +286,9 @@ TEST(StaticFriction, HoldsUntilItBreaksAway) {
     EXPECT_NEAR(simulation.velocity(0), 0, 1e-14) << scheme;
     const double rest = simulation.position(0);
     simulation.command_effort(0, 3.5);  // not enough for a block at rest
-    run(simulation, 50, [&] { ASSERT_EQ(simulation.position(0), rest) << scheme; });
+    // The alternating part of the acceleration may move it for a few steps.
+    const double moved = alternates ? 0.001 * tolerance : 0;
+    run(simulation, 50, [&] { ASSERT_NEAR(simulation.position(0), rest, moved) << scheme; });
   }
 }
 
