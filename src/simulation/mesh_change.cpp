@@ -165,6 +165,7 @@ class MeshChange {
       std::vector<int> indices(1, chain.elements.front()->nodes[0]);
       for (const Element* one : chain.elements) indices.insert(indices.end(), one->nodes.begin() + 1, one->nodes.end());
       std::vector<NodeState> nodes;
+      nodes.reserve(indices.size());
       for (const int index : indices) nodes.push_back(out_.nodes[index]);
       if (chain.halved) {
         const auto& old = chain.halved->nodes;
@@ -185,6 +186,7 @@ class MeshChange {
       const std::vector<int>& line = new_.slide_lines[joint.line].nodes;
       if (std::none_of(line.begin(), line.end(), [&](int node) { return changed_.count(node) > 0; })) continue;
       std::vector<NodePose> poses;
+      poses.reserve(out_.nodes.size());
       for (const NodeState& node : out_.nodes) poses.push_back(node_pose(node));
       const NodePose place = slave_pose(new_, static_cast<int>(j), poses, out_.released[j]);
       const NodeState found = out_.nodes[joint.slave];

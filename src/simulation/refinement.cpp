@@ -123,6 +123,7 @@ std::vector<HalvedElement> straight_elements(const Model& model, const State& st
   });
   std::sort(found.begin(), found.end());
   std::vector<HalvedElement> elements;
+  elements.reserve(found.size());
   for (const auto& one : found) elements.push_back(one.second);
   return elements;
 }
