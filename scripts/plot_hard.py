@@ -68,7 +68,7 @@ def draw(axes, part, schemes):
 def legend(figure):
     entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (1, 3, 10, 50)]
     entries += [("wrong", WRONG), ("wrong, warned", WARNED), ("failed, or unsound and not diagnosed", FAILED),
-                ("unsound, diagnosed", DIAGNOSED), ("the scheme has no contact", LEFT_OUT)]
+                ("unsound, diagnosed", DIAGNOSED), ("the scheme refuses it", LEFT_OUT)]
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=shade) for _, shade in entries]
     figure.legend(handles, [text for text, _ in entries], loc="lower center", ncol=5, fontsize=6)
 
