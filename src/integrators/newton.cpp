@@ -45,12 +45,19 @@ constexpr double kExpectedShare = 0.1;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
 
+bool has_falling_friction(const Model& model) {
+  return std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& coordinate) {
+    return coordinate.static_ratio != 1 && (coordinate.friction > 0 || coordinate.friction_coefficient > 0);
+  });
+}
+
 }  // namespace
 
 NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& settings)
     : system_(system),
       settings_(settings),
       factor_reuse_(system.tangent().cost_of_factors()),
+      has_falling_friction_(has_falling_friction(system.configuration().model())),
       update_(system.degrees_of_freedom().unknowns) {
   norms_.reserve(settings.max_iterations + 1);
 }
@@ -206,7 +213,10 @@ double NewtonIteration::contraction_after(const Progress& progress) const {
   }
   // New factors square the error, kept ones contract it. Symmetric middle functions are not part of the tangent, so
   // that convergence is linear even with new factors.
-  const bool squares = !progress.with_kept && system_.configuration().scheme().mid_functions == MidFunctions::Explicit;
+  // After an update by kept factors, the ratio of both says nothing about the square.
+  // Where friction falls with the rate, its curvature may show in the last update only.
+  const bool squares = !progress.with_kept && !progress.kept_before && !has_falling_friction_ &&
+                       system_.configuration().scheme().mid_functions == MidFunctions::Explicit;
   return squares ? shown * shown : shown;
 }
 

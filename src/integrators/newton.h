@@ -93,6 +93,7 @@ class NewtonIteration {
   StepSystem& system_;
   const StepSettings& settings_;
   FactorReuse factor_reuse_;
+  const bool has_falling_friction_;
   double factorised_step_ = 0;  // step size for which the factors are valid; 0: no factors
   bool made_kept_updates_ = false;
   Eigen::VectorXd update_;
