@@ -11,7 +11,7 @@
 
 #include "accuracy/scheme_tries.h"
 #include "flexarm/scene/scene_description.h"
-#include "integrators/explicit_step.h"
+#include "integrators/explicit_obstacle.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 #include "simulation/refinement.h"

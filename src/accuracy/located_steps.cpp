@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "joints/set_points.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -28,8 +29,9 @@ constexpr double kRefinement = 2;
 constexpr double kMissedTime = 1e-9;
 /// Relative to the longest cell: length of the steps before and after a jump of a set point that strikes.
 constexpr double kStrike = 1e-6;
-/// Relative to the set point: a difference over a millionth of such a step that is a jump.
-constexpr double kJump = 1e-6;
+/// How far from a time set points are compared, relative to such a step; and their difference, relative to themselves,
+/// that is a jump.
+constexpr double kInstant = 1e-6, kJump = 1e-6;
 /// Range of the tolerance of Newton's method.
 constexpr double kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 
@@ -53,13 +55,9 @@ void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, do
 
 /// Whether the set point of a servo jumps at a time, so that the derivative of its error strikes.
 bool strikes(const Model& model, const State& state, std::size_t actuator, double time, double length) {
-  const Actuator& data = model.actuators[actuator];
-  if (!data.servo || data.servo->sample_time > 0 || data.servo->set_point < 0) return false;
-  const ServoState& servo = state.actuators[actuator].servo;
-  const ServoLaw& law = law_of(*data.servo, servo);
-  if (!std::isnan(servo.set_point) || law.mode != ServoMode::Position || law.derivative == 0) return false;
-  const TimeFunction& history = model.histories[data.servo->set_point];
-  const double before = history(time - 1e-6 * length), after = history(time + 1e-6 * length);
+  const TimeFunction* set_point = striking_set_point(model, model.actuators[actuator], state.actuators[actuator].servo);
+  if (!set_point) return false;
+  const double before = (*set_point)(time - kInstant * length), after = (*set_point)(time + kInstant * length);
   return std::abs(after - before) > kJump * std::max(std::abs(before), std::abs(after));
 }
 
@@ -86,11 +84,7 @@ std::vector<double> with_strikes_apart(const Simulation& simulation, const std::
 
 /// Largest effort of an actuator's motor.
 double effort_limit(const Model& model, const Actuator& actuator) {
-  double limit = actuator.drive.effort_limit;
-  if (!actuator.servo) return limit;
-  const double of_coordinate = model.coordinates[actuator.coordinate].effort_limit;
-  if (of_coordinate > 0) limit = std::min(limit, of_coordinate);
-  return std::min(limit, actuator.servo->effort_limit);
+  return std::min(actuator.drive.effort_limit, servo_limit(model, actuator));
 }
 
 /// Whether forces may jump at times that cannot be foreseen, and steps can find these.

@@ -9,7 +9,7 @@
 
 #include "accuracy/candidates.h"
 #include "flexarm/model/model_error.h"
-#include "integrators/explicit_step.h"
+#include "integrators/explicit_obstacle.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 #include "simulation/refinement.h"

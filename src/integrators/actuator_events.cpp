@@ -3,6 +3,7 @@
 
 #include "integrators/actuators.h"
 #include "joints/joint_forces.h"
+#include "joints/set_points.h"
 
 namespace flexarm {
 namespace {
@@ -101,11 +102,8 @@ double Actuators::demand_at(std::size_t index, int end) const {
 /// Sets the set point at an end of the step and its rate, from a parabola through three instants of the step.
 void Actuators::set_point_at(const Servo& servo, const ServoState& state, int end, ServoInstant& at) const {
   const double begin = configuration_.state().time, step = configuration_.step();
-  const bool is_commanded = !std::isnan(state.set_point);
   const auto value = [&](double part) {
-    const double time = begin + part * step;
-    if (is_commanded) return state.set_point_at(time);
-    return servo.set_point < 0 ? servo.start : configuration_.model().histories[servo.set_point](time);
+    return flexarm::set_point_at(configuration_.model(), servo, state, begin + part * step);
   };
   const double first = value(kInside), middle = value(0.5), last = value(1 - kInside);
   at.set_point = end == 0 ? first : last;

@@ -5,6 +5,7 @@
 
 #include "flexarm/model/model_error.h"
 #include "joints/elasticity.h"
+#include "joints/set_points.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 
@@ -173,13 +174,10 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
 
 void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& part) const {
   const Servo& servo = *actuator.servo;
-  const double limit = configuration_.model().coordinates[actuator.coordinate].effort_limit;
-  part.demand.limit = limit > 0 ? std::min(limit, servo.effort_limit) : servo.effort_limit;
+  part.demand.limit = servo_limit(configuration_.model(), actuator);
   part.input = servo_input(actuator, part, state);
   if (servo.sample_time > 0 && configuration_.step() != 0) {
-    const TimeFunction* history = servo.set_point >= 0 && std::isnan(state.servo.set_point)
-                                      ? &configuration_.model().histories[servo.set_point]
-                                      : nullptr;
+    const TimeFunction* history = set_point_function(configuration_.model(), servo, state.servo);
     const double time = part.input.time;
     const double set_rate = set_rate_of_sample(servo, state.servo, history, time, kRoundOff * configuration_.step());
     part.servo = state.servo;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "joints/motor_step.h"
+#include "joints/set_points.h"
 
 namespace flexarm {
 namespace {
@@ -40,10 +41,6 @@ bool ExplicitMotors::has_servo(std::size_t actuator) const {
   return model_.actuators[actuator].servo && model_.coordinates[model_.actuators[actuator].coordinate].motion < 0;
 }
 
-const TimeFunction* ExplicitMotors::set_point_of_scene(const Servo& servo, const ServoState& state) const {
-  return servo.set_point >= 0 && std::isnan(state.set_point) ? &model_.histories[servo.set_point] : nullptr;
-}
-
 // ---------------------------------------------------------------- inputs
 
 void ExplicitMotors::begin(const State& state, double step) {
@@ -53,7 +50,7 @@ void ExplicitMotors::begin(const State& state, double step) {
     if (!has_servo(i)) continue;
     const Servo& servo = *model_.actuators[i].servo;
     const ActuatorState& own = state.actuators[i];
-    const TimeFunction* history = set_point_of_scene(servo, own.servo);
+    const TimeFunction* history = set_point_function(model_, servo, own.servo);
     if (servo.sample_time > 0)
       take_sample(model_.actuators[i], own, sampled_[i]);
     else if (history && varies_[servo.set_point])
@@ -69,10 +66,8 @@ void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& 
   input.time = begin_;
   input.measured.step = step_;
   input.measured.begin = own.angle;
-  const TimeFunction* history = set_point_of_scene(data, own.servo);
-  const double set = history                           ? (*history)(begin_)
-                     : std::isnan(own.servo.set_point) ? data.start
-                                                       : own.servo.set_point_at(begin_);
+  const TimeFunction* history = set_point_function(model_, data, own.servo);
+  const double set = set_point_at(model_, data, own.servo, begin_);
   input.set_point = {set, set};
   if (data.feedforward >= 0) input.feedforward = model_.histories[data.feedforward](begin_);
   sample(data, input, set_rate_of_sample(data, own.servo, history, begin_, kOffSample * step_), servo);
@@ -93,13 +88,11 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
       continue;
     }
     if (servo.feedforward >= 0) input.feedforward = values[servo.feedforward];
-    if (set_point_of_scene(servo, own)) {
+    if (set_point_function(model_, servo, own)) {
       input.set_point = values[servo.set_point];
       if (varies_[servo.set_point]) input.set_rate = derivatives_(1, stage, samples_[i], step_);
-    } else if (std::isnan(own.set_point)) {
-      input.set_point = servo.start;
     } else {
-      input.set_point = own.set_point_at(begin_ + part * step_);
+      input.set_point = set_point_at(model_, servo, own, begin_ + part * step_);
       input.set_rate = own.set_rate_at(time, 0);
     }
     if (stage == 0) first_[i] = input.set_point;
@@ -108,18 +101,11 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
 
 // ---------------------------------------------------------------- efforts
 
-double ExplicitMotors::limit(std::size_t actuator) const {
-  const Actuator& data = model_.actuators[actuator];
-  if (!data.servo) return Drive::kInfinity;
-  const double of_coordinate = model_.coordinates[data.coordinate].effort_limit;
-  return of_coordinate > 0 ? std::min(of_coordinate, data.servo->effort_limit) : data.servo->effort_limit;
-}
-
 double ExplicitMotors::effort(std::size_t actuator, const State& state, double other, double position, double rate,
                               double integral, double& integral_rate) const {
   const Actuator& data = model_.actuators[actuator];
   integral_rate = 0;
-  const MotorRange range = motor_range(data.drive, limit(actuator), rate);
+  const MotorRange range = motor_range(data.drive, servo_limit(model_, data), rate);
   if (!data.servo) return std::clamp(other, range.lowest, range.highest);
   const Servo& servo = *data.servo;
   const Input& input = inputs_[actuator];
@@ -136,17 +122,11 @@ double ExplicitMotors::effort(std::size_t actuator, const State& state, double o
   return given;
 }
 
-const TimeFunction* ExplicitMotors::striking_set_point(std::size_t actuator, const State& state) const {
-  if (!has_servo(actuator)) return nullptr;
+const TimeFunction* ExplicitMotors::striking_function(std::size_t actuator, const State& state) const {
   const Actuator& data = model_.actuators[actuator];
-  const Servo& servo = *data.servo;
-  const ServoState& own = state.actuators[actuator].servo;
-  const ServoLaw& law = law_of(servo, own);
-  const bool is_limited = std::isfinite(std::min(limit(actuator), data.drive.effort_limit));
-  if (is_limited || servo.sample_time > 0 || law.mode != ServoMode::Position || law.derivative == 0 || own.off > 0)
-    return nullptr;
-  const TimeFunction* history = set_point_of_scene(servo, own);
-  return history && varies_[servo.set_point] ? history : nullptr;
+  if (std::isfinite(std::min(servo_limit(model_, data), data.drive.effort_limit))) return nullptr;
+  const TimeFunction* function = striking_set_point(model_, data, state.actuators[actuator].servo);
+  return function && varies_[data.servo->set_point] ? function : nullptr;
 }
 
 /// The impulse by a change of the set point of which a part is smooth.
@@ -158,14 +138,14 @@ double ExplicitMotors::impulse_by(std::size_t actuator, const State& state, doub
 }
 
 double ExplicitMotors::first_impulse(std::size_t actuator, const State& state) const {
-  const TimeFunction* history = striking_set_point(actuator, state);
+  const TimeFunction* history = striking_function(actuator, state);
   if (!history) return 0;
   return impulse_by(actuator, state, set_point_at_border(*history, begin_, step_), first_[actuator], 0);
 }
 
 double ExplicitMotors::later_impulse(std::size_t actuator, const State& state,
                                      const std::vector<double>& weights) const {
-  const TimeFunction* history = striking_set_point(actuator, state);
+  const TimeFunction* history = striking_function(actuator, state);
   if (!history) return 0;
   double smooth = 0;
   for (std::size_t s = 0; s < weights.size(); ++s)

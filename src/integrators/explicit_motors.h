@@ -44,15 +44,11 @@ class ExplicitMotors {
     double law = 0, off = 0;
     bool operator==(const Input& other) const;
   };
-  /// The scene's function for a set point whose jumps strike; null if there is none.
-  const TimeFunction* striking_set_point(std::size_t actuator, const State& state) const;
+  /// The scene's function for a set point whose jumps strike; null if there is none, or if it is constant.
+  const TimeFunction* striking_function(std::size_t actuator, const State& state) const;
   double impulse_by(std::size_t actuator, const State& state, double from, double to, double smooth) const;
-  /// Limit of the motor's effort besides those of its drive.
-  double limit(std::size_t actuator) const;
   /// Whether an actuator has a servo that moves its coordinate.
   bool has_servo(std::size_t actuator) const;
-  /// The scene's function for the set point; null if there is none, or a command is in force.
-  const TimeFunction* set_point_of_scene(const Servo& servo, const ServoState& state) const;
   void take_sample(const Actuator& actuator, const ActuatorState& own, ServoState& servo) const;
 
   const Model& model_;

@@ -7,6 +7,7 @@
 
 #include "elements/load.h"
 #include "flexarm/model/model_error.h"
+#include "integrators/explicit_obstacle.h"
 #include "integrators/step_histories.h"
 #include "joints/joint_forces.h"
 #include "joints/joint_kinematics.h"
@@ -15,29 +16,6 @@
 #include "schemes/explicit_tableau.h"
 
 namespace flexarm {
-
-const char* explicit_obstacle(const Model& model) {
-  bool has_beams = false;
-  for_each_element(model.beams, [&](const auto&) { has_beams = true; });
-  if (has_beams) return "flexible links";
-  if (!model.slide_lines.empty()) return "sliders";
-  if (!model.force_elements.empty()) return "springs, lines, drag or contacts";
-  if (!model.held.empty()) return "joints that a motion holds";
-  for (const Coordinate& coordinate : model.coordinates) {
-    const bool depends = coordinate.motion >= 0 || coordinate.mimicked >= 0;
-    if (depends && model.joints[coordinate.joint].kind != JointMapKind::Scalar)
-      return "prescribed motions of floating joints";
-    if (coordinate.sticks && coordinate.friction > 0) return "dry friction";
-    if (coordinate.friction_coefficient > 0) return "friction that depends on the load";
-  }
-  for (const Actuator& actuator : model.actuators) {
-    if (actuator.drive.gear || actuator.gyroscope) return "rotors with a motion of their own";
-    if (actuator.drive.loss > 0) return "losses of gears";
-    if (actuator.spring && actuator.spring->elasticity.backlash > 0) return "play";
-  }
-  if (!model.reactions.empty()) return "sensors of reactions";
-  return nullptr;
-}
 
 namespace {
 
@@ -92,6 +70,7 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
   work_ = rates_ + bodies_.rate_count();
   integrals_ = work_ + 2;
   efforts_.resize(bodies_.rate_count());
+  no_efforts_.resize(bodies_.rate_count());
   armatures_.resize(bodies_.rate_count());
   for (const Coordinate& coordinate : model.coordinates) {
     armatures_[joints_[coordinate.joint].first_rate + coordinate.component] = armature(model, coordinate);
@@ -330,9 +309,8 @@ bool ExplicitStep::strike(const State& state, std::size_t stage, std::vector<dou
   }
   if (!jumps) return true;
   // Accelerations are affine in efforts, so the change of rates is a difference of two.
-  std::fill(before_.begin(), before_.end(), 0.0);
   if (!place(stage, numbers)) return false;
-  accelerate(stage, before_.data(), changes_[0]);
+  accelerate(stage, no_efforts_.data(), changes_[0]);
   if (!place(stage, numbers)) return false;
   accelerate(stage, efforts_.data(), last_change_);
   for (std::size_t i = 0; i < efforts_.size(); ++i) {

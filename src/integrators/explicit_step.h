@@ -16,9 +16,6 @@ namespace flexarm {
 /// Limit for the violation of a loop's implied constraints: far above the errors of Newton and of rounded input.
 constexpr double kOpenLoop = 1e-4;
 
-/// Returns what explicit schemes cannot simulate in a model, in words; null: nothing.
-const char* explicit_obstacle(const Model& model);
-
 /// Integrates the released coordinates, their rates, the integrals of servos, and the work and the dissipation that the
 /// state adds up. Allocates no memory after construction.
 class ExplicitStep {
@@ -72,7 +69,7 @@ class ExplicitStep {
   std::vector<NodePose> poses_;
   std::vector<Vector6> velocities_;
   std::vector<Released> released_;
-  std::vector<double> efforts_, applied_, armatures_;  // per rate; `applied_`: per coordinate, without passive ones
+  std::vector<double> efforts_, no_efforts_, applied_, armatures_;  // per rate; `applied_`: per coordinate, not passive
   /// Positions of all joints, their rates, work, dissipation, integrals of servos: at the beginning, and at a stage or
   /// the end.
   std::vector<double> begin_, stage_, before_;
