@@ -117,36 +117,44 @@ TEST(ArticulatedBodies, MoveAsJointsDo) {
   }
 }
 
-// For each rate, the power of the forces minus d(momentum)/dt on the velocities that it causes is the effort, minus the
-// armature's share.
-TEST(ArticulatedBodies, AreInBalance) {
+/// A tree somewhere, and what moves and accelerates it: numbers of the order of 1.
+struct MovingTree {
+  explicit MovingTree(unsigned seed) : random(seed) {}
+
   const Model model = tree();
-  RandomSource random(7);
-  ArticulatedBodies bodies(model);
+  RandomSource random;
+  ArticulatedBodies bodies{model};
   const int count = bodies.rate_count();
   const std::vector<Released> released = somewhere(model, random);
   const Eigen::VectorXd rates = numbers(count, random), efforts = numbers(count, random),
                         armatures = numbers(count, random).cwiseAbs();
   const Vector6 force = random.vector6();
-  Eigen::VectorXd changes(count);
-  bodies.set(somewhere(model, random), efforts.data());  // nothing of it may stay
-  bodies.set(released, rates.data());
-  bodies.add_force(2, force);
-  bodies.accelerate(efforts.data(), armatures.data(), changes.data());
+};
+
+// For each rate, the power of the forces minus d(momentum)/dt on the velocities that it causes is the effort, minus the
+// armature's share.
+TEST(ArticulatedBodies, AreInBalance) {
+  MovingTree at(7);
+  Eigen::VectorXd changes(at.count);
+  at.bodies.set(somewhere(at.model, at.random), at.efforts.data());  // nothing of it may stay
+  at.bodies.set(at.released, at.rates.data());
+  at.bodies.add_force(2, at.force);
+  at.bodies.accelerate(at.efforts.data(), at.armatures.data(), changes.data());
   std::vector<Vector6> lacks;  // per node: forces minus the change of momentum
-  for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
-    const Matrix3 rotary = bodies.rotation(node) * model.inertias[node].rotary * bodies.rotation(node).transpose();
-    const Vector3 spin = bodies.velocity(node).tail<3>();
+  for (int node = 0; node < static_cast<int>(at.model.nodes.size()); ++node) {
+    const Matrix3 rotary =
+        at.bodies.rotation(node) * at.model.inertias[node].rotary * at.bodies.rotation(node).transpose();
+    const Vector3 spin = at.bodies.velocity(node).tail<3>();
     Vector6 lack;
-    lack << model.inertias[node].mass * (model.gravity - bodies.acceleration(node).head<3>()),
-        -rotary * bodies.acceleration(node).tail<3>() - spin.cross(rotary * spin);
-    lacks.push_back(node == 2 ? Vector6(lack + force) : lack);
+    lack << at.model.inertias[node].mass * (at.model.gravity - at.bodies.acceleration(node).head<3>()),
+        -rotary * at.bodies.acceleration(node).tail<3>() - spin.cross(rotary * spin);
+    lacks.push_back(node == 2 ? Vector6(lack + at.force) : lack);
   }
-  for (int k = 0; k < count; ++k) {
-    ArticulatedBodies alone(model);
-    const Eigen::VectorXd one = Eigen::VectorXd::Unit(count, k);
-    alone.set(released, one.data());
-    double power = efforts[k] - armatures[k] * changes[k];
+  for (int k = 0; k < at.count; ++k) {
+    ArticulatedBodies alone(at.model);
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(at.count, k);
+    alone.set(at.released, one.data());
+    double power = at.efforts[k] - at.armatures[k] * changes[k];
     for (std::size_t node = 0; node < lacks.size(); ++node)
       power += lacks[node].dot(alone.velocity(static_cast<int>(node)));
     EXPECT_NEAR(power, 0, 1e-12) << k;
@@ -156,42 +164,35 @@ TEST(ArticulatedBodies, AreInBalance) {
 // Inverse dynamics needs the efforts that forward dynamics was given. The mass matrix has the differences of efforts
 // for unit changes of rates. Round-off of numbers of the order of 10.
 TEST(ArticulatedBodies, NeedTheEffortsThatAccelerateThem) {
-  const Model model = tree();
-  RandomSource random(9);
-  ArticulatedBodies bodies(model);
-  const int count = bodies.rate_count();
-  const std::vector<Released> released = somewhere(model, random);
-  const Eigen::VectorXd rates = numbers(count, random), efforts = numbers(count, random),
-                        armatures = numbers(count, random).cwiseAbs();
-  const Vector6 force = random.vector6();
-  Eigen::VectorXd changes(count), needed(count), more(count);
+  MovingTree at(9);
+  Eigen::VectorXd changes(at.count), needed(at.count), more(at.count);
   const auto set = [&] {
-    bodies.set(released, rates.data());
-    bodies.add_force(3, force);
+    at.bodies.set(at.released, at.rates.data());
+    at.bodies.add_force(3, at.force);
   };
   set();
-  bodies.accelerate(efforts.data(), armatures.data(), changes.data());
-  const Vector6 acceleration = bodies.acceleration(6);
+  at.bodies.accelerate(at.efforts.data(), at.armatures.data(), changes.data());
+  const Vector6 acceleration = at.bodies.acceleration(6);
   set();
-  bodies.set_accelerations(changes.data());
-  EXPECT_LT((bodies.acceleration(6) - acceleration).norm(), 1e-12);
-  bodies.find_needed_efforts(changes.data(), armatures.data(), needed.data());
-  EXPECT_LT((needed - efforts).norm(), 1e-12);
-  Eigen::MatrixXd mass(count, count);
-  bodies.find_mass_matrix(armatures.data(), mass);
-  for (int k = 0; k < count; ++k) {
-    const Eigen::VectorXd other = changes + Eigen::VectorXd::Unit(count, k);
+  at.bodies.set_accelerations(changes.data());
+  EXPECT_LT((at.bodies.acceleration(6) - acceleration).norm(), 1e-12);
+  at.bodies.find_needed_efforts(changes.data(), at.armatures.data(), needed.data());
+  EXPECT_LT((needed - at.efforts).norm(), 1e-12);
+  Eigen::MatrixXd mass(at.count, at.count);
+  at.bodies.find_mass_matrix(at.armatures.data(), mass);
+  for (int k = 0; k < at.count; ++k) {
+    const Eigen::VectorXd other = changes + Eigen::VectorXd::Unit(at.count, k);
     set();
-    bodies.set_accelerations(other.data());
-    bodies.find_needed_efforts(other.data(), armatures.data(), more.data());
+    at.bodies.set_accelerations(other.data());
+    at.bodies.find_needed_efforts(other.data(), at.armatures.data(), more.data());
     EXPECT_LT((more - needed - mass.col(k)).norm(), 1e-11) << k;
   }
   // A row of powers is the velocity that each rate gives the node.
-  Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(at.count);
   set();
-  bodies.add_power(3, force, row.data());
-  bodies.add_power(-1, force, row.data());
-  EXPECT_NEAR(row.dot(rates), force.dot(bodies.velocity(3)), 1e-12);
+  at.bodies.add_power(3, at.force, row.data());
+  at.bodies.add_power(-1, at.force, row.data());
+  EXPECT_NEAR(row.dot(at.rates), at.force.dot(at.bodies.velocity(3)), 1e-12);
 }
 
 }  // namespace

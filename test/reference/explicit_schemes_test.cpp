@@ -39,12 +39,18 @@ struct Method {
   double coarse;  ///< steps whose error is far above round-off, and its half
 };
 
-class ExplicitSchemes : public ::testing::TestWithParam<Method> {};
-
-/// The slope of errors at steps that are halved.
-double order_between(double coarse, double fine) {
-  return std::log2(coarse / fine);
-}
+class ExplicitSchemes : public ::testing::TestWithParam<Method> {
+ protected:
+  /// Expects the error to fall with the order of the method when steps are halved. `error`: after a number of steps.
+  /// `steps`: as many steps of Method::coarse. `round_off`: below which errors show no order.
+  template <class Error>
+  static void expect_order(const Error& error, double steps, double round_off) {
+    const int count = static_cast<int>(std::lround(steps / GetParam().coarse));
+    const double coarse = error(count), fine = error(2 * count);
+    EXPECT_GT(fine, round_off);
+    EXPECT_NEAR(std::log2(coarse / fine), GetParam().order, 0.4) << coarse << " " << fine;
+  }
+};
 
 // A pendulum released from the horizontal comes to the other side, at rest, after half its period
 // 4 K(1/2) / sqrt(m g l / J).
@@ -59,10 +65,7 @@ TEST_P(ExplicitSchemes, SwingAPendulum) {
     for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
     return std::hypot(s.position(0) - kPi, s.velocity(0) / rate);
   };
-  const int steps = static_cast<int>(std::lround(half / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-13);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, half, 1e-13);
 }
 
 constexpr double kGravity = 9.81;
@@ -93,10 +96,7 @@ TEST_P(ExplicitSchemes, SwingOnACartThatAMotionDrives) {
   const auto error = [&](int steps) {
     return error_after_swing(text, "hinge", GetParam().name, half, steps, kPi, rate);
   };
-  const int steps = static_cast<int>(std::lround(half / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-13);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, half, 1e-13);
 }
 
 // The effort of a motion is that of the equation of motion, and its work the change of energy.
@@ -153,10 +153,7 @@ TEST_P(ExplicitSchemes, ArePulled) {
     EXPECT_NEAR(s.energies().total() - s.energies().work, 0, 1e-3);
     return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
   };
-  const int steps = static_cast<int>(std::lround(half * rate / 3.5 / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-14);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, half * rate / 3.5, 1e-14);
 }
 
 // A joint with a spring and another one that follows it: a harmonic oscillator.
@@ -174,10 +171,7 @@ TEST_P(ExplicitSchemes, FollowOtherJoints) {
     EXPECT_NEAR(s.velocity(1), -1.5 * s.velocity(0), 1e-13);
     return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
   };
-  const int steps = static_cast<int>(std::lround(half * rate / 3.5 / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-14);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, half * rate / 3.5, 1e-14);
 }
 
 // A parallelogram linkage swings as a pendulum: its coupler is not turned. It is let go at 60 degrees.
@@ -200,10 +194,7 @@ TEST_P(ExplicitSchemes, SwingAParallelogram) {
   const auto error = [&](int steps) {
     return error_after_swing(text, "crank", GetParam().name, half, steps, 2 * kPi / 3, rate);
   };
-  const int steps = static_cast<int>(std::lround(1.6 * half / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-14);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, 1.6 * half, 1e-14);
 }
 
 // The four-bar linkage of the speed report, driven: positions and efforts are those of em4 with short steps.
@@ -262,10 +253,7 @@ TEST_P(ExplicitSchemes, SpinATop) {
     EXPECT_LT((pose.position - kTime * Vector3(0.3, -0.2, 0.1)).norm(), 1e-12);
     return pose.orientation.angularDistance(turned);
   };
-  const int steps = static_cast<int>(std::lround(kTime / GetParam().coarse));
-  const double coarse = error(steps), fine = error(2 * steps);
-  EXPECT_GT(fine, 1e-13);
-  EXPECT_NEAR(order_between(coarse, fine), GetParam().order, 0.4) << coarse << " " << fine;
+  expect_order(error, kTime, 1e-13);
 }
 
 // Two links with springs, dampers, smooth friction, rotors, an effort and a load: what the energy lacks is the work and
