@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints reference values for test/reference/static_friction_test.cpp: stick and slip with Stribeck's curve, by solve_ivp.
+"""Prints reference values for test/reference/static_friction_test.cpp: stick and slip with Stribeck's curve.
 
 A mass on a rail is pulled by a spring whose end moves with constant speed. Friction is F (1 + (r - 1) exp(-(v/v_s)^2)).
 While the mass sticks, everything is known in closed form; events end the slips.
