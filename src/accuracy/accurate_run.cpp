@@ -209,8 +209,10 @@ class TriesOfARun {
 
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher) {
   require_constant_mesh(simulation.scene(), "a run to an accuracy");
-  const double step = simulation.step_size(), tolerance = simulation.tolerance();
+  const double step = simulation.step_size(), tolerance = simulation.tolerance(),
+               constants = step_of_constants(simulation);
   AccurateRun run = TriesOfARun(simulation, request, watcher).run();
+  set_step_of_constants(simulation, constants);
   simulation.set_step_size(step);
   simulation.set_tolerance(tolerance);
   return run;

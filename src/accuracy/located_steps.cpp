@@ -119,7 +119,10 @@ std::vector<double> known_corners(const Simulation& simulation, double begin, do
 }
 
 LocatedSteps::LocatedSteps(Simulation& simulation, const std::vector<double>& cells)
-    : simulation_(simulation), cells_(with_strikes_apart(simulation, cells)), has_events_(may_have_events(simulation)) {
+    : simulation_(simulation),
+      cells_(with_strikes_apart(simulation, cells)),
+      step_of_scene_(step_of_constants(simulation)),
+      has_events_(may_have_events(simulation)) {
   for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
 }
 
@@ -133,12 +136,18 @@ double LocatedSteps::planned(double steps) const {
   return sum;
 }
 
+void LocatedSteps::go_back(const Snapshot& start) {
+  set_step_of_constants(simulation_, step_of_scene_);
+  simulation_.restore(start);
+}
+
 void LocatedSteps::set(int steps, double tolerance) {
   steps_ = steps;
   tolerance_ = tolerance;
   iterations = recoveries = 0;
   turn = 0;
   next_ = 1;
+  set_step_of_constants(simulation_, std::min(step_of_scene_, step()));
 }
 
 StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watcher) {

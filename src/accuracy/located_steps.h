@@ -21,8 +21,11 @@ class LocatedSteps {
   /// `cells`: ends of the cells, increasing. The first number is the time at which the simulation begins [s].
   LocatedSteps(Simulation& simulation, const std::vector<double>& cells);
 
+  /// Returns to this state of the simulation, which was taken before the first steps.
+  void go_back(const Snapshot& start);
   /// Starts again with the first cell. The longest cell gets `steps` steps. Shorter ones get fewer, by the square root
-  /// of their length, since their local errors are small. `tolerance` of Newton's method is for the longest steps.
+  /// of their length, since their local errors are small. `tolerance` of Newton's method is for the longest steps. If
+  /// these are shorter than the scene's step, the scheme gets their constants, whose effect falls with the errors.
   void set(int steps, double tolerance);
   /// Number of steps in all cells if the longest has `steps`, without those that events add.
   double planned(double steps) const;
@@ -47,6 +50,7 @@ class LocatedSteps {
   std::vector<double> cells_;
   std::size_t next_ = 1;
   double longest_ = 0, tolerance_ = 0;
+  double step_of_scene_;  // from which the scheme had its constants at the beginning [s]
   int steps_ = 1;
   bool has_events_;
   Snapshot before_;  // state before the step

@@ -135,7 +135,7 @@ double SchemeTries::share(double order, double planned) const {
 }
 
 bool SchemeTries::attempt(AccurateRun& run) {
-  simulation_.restore(start_);
+  stepping_.go_back(start_);
   steps_ = next_;
   set_steps();
   run.steps_per_interval = steps_;

@@ -36,6 +36,12 @@ Scheme statics_of(Scheme scheme) {
   return scheme;
 }
 
+void take_constants_of_step(Scheme& scheme, const IntegratorDescription& integrator, double step) {
+  if (scheme.damping_relaxation > 0) scheme.damping_relaxation = step;
+  if (scheme.dissipation.any())
+    scheme.dissipation = numerical_dissipation(scheme.order, integrator.rho_infinity.value_or(kDefaultRho), step);
+}
+
 Scheme make_scheme(const IntegratorDescription& integrator) {
   const std::vector<const Scheme*> found = meanings(integrator.scheme);
   if (found.empty())
@@ -55,14 +61,12 @@ Scheme make_scheme(const IntegratorDescription& integrator) {
   require(scheme.alpha >= -1.0 / 3 && scheme.alpha <= 0, "alpha must be from -1/3 to 0");
   if (integrator.interpolation) scheme.interpolation = *integrator.interpolation;
   if (integrator.weak_form) scheme.weak_form = *integrator.weak_form;
-  if (scheme.damping_relaxation > 0) scheme.damping_relaxation = integrator.step;
   scheme.contact_time = kContactSteps * integrator.step;
   const double rho = integrator.rho_infinity.value_or(kDefaultRho);
   require(rho >= 0 && rho <= 1, "rho_infinity must be from 0 to 1");
-  if (scheme.dissipation.any()) {
-    scheme.dissipation = numerical_dissipation(scheme.order, rho, integrator.step);
-    scheme.conserves_energy = !scheme.dissipation.any();
-  }
+  const bool may_dissipate = scheme.dissipation.any();
+  take_constants_of_step(scheme, integrator, integrator.step);
+  if (may_dissipate) scheme.conserves_energy = !scheme.dissipation.any();
   scheme.may_be_planar = integrator.may_be_planar;
   return scheme;
 }

@@ -57,6 +57,10 @@ std::vector<const Scheme*> meanings(std::string_view name);
 /// @throws ModelError naming the option that does not suit the scheme, or an unknown scheme.
 Scheme make_scheme(const IntegratorDescription& integrator);
 
+/// Gives a scheme of `integrator` the constants that follow from this step [s]: those of numerical dissipation and the
+/// relaxation time of dampers. Their effect is of second order in the step (of first, for dissipation of first order).
+void take_constants_of_step(Scheme& scheme, const IntegratorDescription& integrator, double step);
+
 /// Coefficients of numerical dissipation for a spectral radius rho_infinity in [0, 1] at infinite frequency. `order`: 1
 /// or 2; `step`: step size [s].
 NumericalDissipation numerical_dissipation(int order, double rho_infinity, double step);

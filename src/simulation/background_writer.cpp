@@ -101,6 +101,7 @@ void BackgroundWriter::set_state(Entry& entry, const Simulation& simulation) {
   entry.has_state = true;
   entry.state = snapshot_of(simulation);
   entry.step_size = simulation.step_size();
+  entry.step_of_constants = step_of_constants(simulation);
 }
 
 /// Reuses the memory that came back last, which is still in the processor's cache. Cycling through all entries of the
@@ -142,6 +143,7 @@ void BackgroundWriter::write_entries() {
 void BackgroundWriter::write(Entry& entry) {
   if (entry.has_state) {
     if (mirror_.step_size() != entry.step_size) set_step(mirror_, entry.step_size, {});
+    set_step_of_constants(mirror_, entry.step_of_constants);
     mirror_.restore(entry.state);
     returned_.free_entry() = std::move(entry.state);
     returned_.push();

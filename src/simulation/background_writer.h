@@ -35,7 +35,7 @@ class BackgroundWriter : public ResultWriter {
     StepResult result;                     // of the step
     bool has_state = false;
     Snapshot state;
-    double step_size = 0;  // with a state: of the simulation, which may change it [s]
+    double step_size = 0, step_of_constants = 0;  // with a state: of the simulation, which may change them [s]
   };
 
   Entry& next_entry();

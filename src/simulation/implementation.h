@@ -40,6 +40,7 @@ struct Simulation::Implementation {
   scene::SceneDescription scene;
   Scheme scheme;
   IntegratorDescription first_integrator;  ///< from which `scheme` was made and the initial state was found
+  double step_of_constants;                ///< from which `scheme` has its constants [s]
   StepSettings settings;
   std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
   Model model;
@@ -68,6 +69,7 @@ struct Simulation::Implementation {
       : scene(std::move(placed.scene)),
         scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
         first_integrator(scene.integrator),
+        step_of_constants(first_integrator.step),
         settings(settings_of(scene, options)),
         model(build_model(scene, &rigid_lines)),
         is_refined(refines(model)),
@@ -103,6 +105,7 @@ struct Simulation::Implementation {
       : scene(other.scene),
         scheme(other.scheme),
         first_integrator(other.first_integrator),
+        step_of_constants(other.step_of_constants),
         settings(other.settings),
         rigid_lines(other.rigid_lines),
         model(other.model),
@@ -326,6 +329,20 @@ struct Simulation::Implementation {
     settings.events = events;
     stepper->set_step(step, events);
     state.halving_level = state.good_steps = 0;
+  }
+
+  void set_step_of_constants(double step) {
+    if (step == step_of_constants) return;
+    step_of_constants = step;
+    if (state.strain_memory.empty()) return;  // nothing is damped by these constants
+    Scheme changed = scheme;
+    take_constants_of_step(changed, first_integrator, step);
+    const double gain =
+        flexarm::energies(model, changed, state).strain - flexarm::energies(model, scheme, state).strain;
+    (gain > 0 ? state.work : state.dissipated) += std::abs(gain);
+    scheme = changed;
+    stepper = std::make_unique<Stepper>(model, scheme, settings);
+    forget_published();
   }
 
   void restore(const State& other) {

@@ -116,6 +116,12 @@ void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved)
 void set_step(Simulation& simulation, double step, const EventSearch& events) {
   Inside::of(simulation).set_step(step, events);
 }
+double step_of_constants(const Simulation& simulation) {
+  return Inside::of(simulation).step_of_constants;
+}
+void set_step_of_constants(Simulation& simulation, double step) {
+  Inside::of(simulation).set_step_of_constants(step);
+}
 double event_of(const Simulation& simulation) {
   return Inside::of(simulation).stepper->event();
 }

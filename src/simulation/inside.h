@@ -69,6 +69,12 @@ void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved)
 
 /// Sets the length of the next steps [s], whatever the sample times of servos, and how they look for events.
 void set_step(Simulation& simulation, double step, const EventSearch& events);
+/// The step from which the scheme has its constants (take_constants_of_step()) [s]: that of the scene, unless
+/// set_step_of_constants() has set another.
+double step_of_constants(const Simulation& simulation);
+/// Gives the scheme the constants of this step [s]. What dampers store of the motion changes with them; the difference
+/// is dissipated, or is work.
+void set_step_of_constants(Simulation& simulation, double step);
 /// For a step that ended as StepResult::Reason::EventWithin: time of the event from the beginning of the step [s].
 double event_of(const Simulation& simulation);
 

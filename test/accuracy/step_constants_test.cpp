@@ -1,0 +1,106 @@
+// Tests that what a scheme takes from the scene's step, the relaxation of dampers and numerical dissipation, does not
+// stay as an error of a run to an accuracy: against the closed form of a damped oscillator.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "flexarm/accuracy/accurate_run.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+#include "simulation/inside.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kMass = 2, kStiffness = 800, kViscosity = 0.02, kPush = 8, kUntil = 0.5;  // kg, N/m, s, N, s
+
+/// A mass at the end of a rod that has hardly any mass of its own. A force along the rod begins to push at once.
+scene::SceneDescription oscillator(const char* scheme, double viscosity) {
+  const std::string text =
+      fmt::format(R"(
+    <robot name="oscillator">
+      <link name="world"/>
+      <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint>
+      <link name="rod">
+        <beam elements="1" order="1">
+          <centerline> <line to="1 0 0"/> </centerline>
+          <section ea="{}" ga2="1e3" ga3="1e3" gj="10" ei2="10" ei3="10" mass="1e-9" j1="1e-12" j2="1e-12" j3="1e-12"/>
+          {}
+        </beam>
+      </link>
+      <joint name="grip" type="fixed"> <parent link="rod"/> <child link="mass"/> <origin xyz="1 0 0"/> </joint>
+      <link name="mass">
+        <inertial> <mass value="{}"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial>
+      </link>
+      <simulation>
+        <gravity xyz="0 0 0"/>
+        <integrator scheme="{}" step="0.01"/>
+        <load link="mass" force="{} 0 0"/>
+        <probe name="tip" link="mass"/>
+      </simulation>
+    </robot>)",
+                  kStiffness, viscosity > 0 ? fmt::format("<damping stiffness_proportional=\"{}\"/>", viscosity) : "",
+                  kMass, scheme, kPush);
+  const scene::ReadResult read = scene::read_scene_text(text, "oscillator");
+  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
+  return *read.scene;
+}
+
+/// Displacement of the mass after a time, from m x'' + eta k x' + k x = F.
+double exact(double viscosity, double time) {
+  const double w = std::sqrt(kStiffness / kMass), decay = 0.5 * viscosity * w * w,
+               turning = std::sqrt(w * w - decay * decay);
+  return kPush / kStiffness *
+         (1 - std::exp(-decay * time) * (std::cos(turning * time) + decay / turning * std::sin(turning * time)));
+}
+
+struct Oscillator {
+  const char* scheme;
+  double viscosity;
+};
+
+class StepConstants : public ::testing::TestWithParam<Oscillator> {};
+
+TEST_P(StepConstants, FollowTheSteps) {
+  const auto [scheme, viscosity] = GetParam();
+  for (const double accuracy : {1e-3, 1e-5, 1e-6}) {
+    Simulation simulation(oscillator(scheme, viscosity));
+    RunWatcher watcher;
+    const AccurateRun run = run_to_accuracy(simulation, {accuracy, kUntil}, watcher);
+    EXPECT_EQ(run.end, AccurateRun::End::Met);
+    const Trajectory& path = run.motion.points[0];
+    double squares = 0, largest = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double x = exact(viscosity, kUntil * static_cast<double>(i) / static_cast<double>(path.size() - 1));
+      squares += std::pow(path[i][0] - path[0][0] - x, 2);
+      largest = std::max(largest, x);
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(path.size())), accuracy * largest);
+    EXPECT_EQ(step_of_constants(simulation), 0.01);
+  }
+}
+
+TEST_P(StepConstants, ChangeWithAnExactAccount) {
+  const auto [scheme, viscosity] = GetParam();
+  Simulation simulation(oscillator(scheme, viscosity));
+  for (int n = 0; n < 7; ++n) ASSERT_TRUE(simulation.step().converged);
+  for (const double step : {0.003, 0.02, 0.01}) {
+    const Energies before = simulation.energies();
+    set_step_of_constants(simulation, step);
+    const Energies after = simulation.energies();
+    EXPECT_NE(after.strain, before.strain);
+    EXPECT_NEAR(after.kinetic + after.strain + after.dissipated - after.work,
+                before.kinetic + before.strain + before.dissipated - before.work, 1e-15 * kPush);
+    EXPECT_GE(after.dissipated, before.dissipated);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, StepConstants,
+                         ::testing::Values(Oscillator{"em", kViscosity}, Oscillator{"em0", kViscosity},
+                                           Oscillator{"edmc2", 0}, Oscillator{"edmc2", kViscosity}));
+
+}  // namespace
+}  // namespace flexarm::test
