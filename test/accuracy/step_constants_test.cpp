@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/accuracy/accurate_run.h"
+#include "flexarm/accuracy/companion.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "simulation/inside.h"
@@ -96,6 +97,20 @@ TEST_P(StepConstants, ChangeWithAnExactAccount) {
                 before.kinetic + before.strain + before.dissipated - before.work, 1e-15 * kPush);
     EXPECT_GE(after.dissipated, before.dissipated);
   }
+}
+
+TEST_P(StepConstants, AreHeededByTheCompanion) {
+  const auto [scheme, viscosity] = GetParam();
+  Simulation simulation(oscillator(scheme, viscosity));
+  simulation.set_step_size(0.0025);  // the constants stay those of 0.01 s, and so does their error
+  Companion companion(simulation);
+  double estimate = 0, error = 0;
+  while (simulation.time() < kUntil) {
+    ASSERT_TRUE(simulation.step().converged);
+    estimate = companion.follow(simulation);
+    error = std::max(error, std::abs(simulation.probe_pose(0).position[0] - 1 - exact(viscosity, simulation.time())));
+  }
+  EXPECT_NEAR(estimate, error, 0.5 * error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, StepConstants,
