@@ -169,7 +169,7 @@ class TreeBuilder {
                 Pose{-mesh.centroid, mesh.nodes.back().pose.orientation.conjugate()}};
     beam.length = centreline.length();
     beam.radius = mesh.section.largest_radius();
-    beam.refines = plan_.scene.links[link].beam->refine;
+    beam.refines = plan_.scene.links[link].beam->refine.value_or(false);
     model_.links[link].beam = beam;
     model_.links[link].frame = {first_node, mesh.nodes[0].pose.inverse()};
   }

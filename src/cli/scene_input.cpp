@@ -99,7 +99,11 @@ scene::ReadResult read_scene(const SceneInput& input) {
 }
 
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options) {
-  Simulation simulation(std::move(*read_scene(input).scene), options);
+  return started(std::move(*read_scene(input).scene), options);
+}
+
+Simulation started(scene::SceneDescription scene, const SimulationOptions& options) {
+  Simulation simulation(std::move(scene), options);
   for (const scene::Diagnostic& warning : simulation.start_warnings()) fmt::print(stderr, "{}\n", warning.text());
   return simulation;
 }

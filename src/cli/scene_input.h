@@ -31,6 +31,9 @@ scene::ReadResult read_scene(const SceneInput& input);
 /// Reads a scene and builds its simulation; prints findings to standard error.
 /// @throws InputError if the scene has errors, ModelError if it cannot be built
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options = {});
+/// Builds the simulation of a scene that was read; prints warnings about its start to standard error.
+/// @throws ModelError if it cannot be built
+Simulation started(scene::SceneDescription scene, const SimulationOptions& options = {});
 
 /// A check for options: a number between 0 and 1, both excluded.
 std::string check_part(const std::string& text);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,9 +18,12 @@
 #include "cli/scene_input.h"
 #include "cli/simulation_output.h"
 #include "flexarm/accuracy/companion.h"
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/run_summary.h"
 #include "pictures/picture.h"
+#include "simulation/inside.h"
+#include "simulation/refinement.h"
 
 namespace flexarm::cli {
 namespace {
@@ -130,13 +134,17 @@ Run run_and_keep(const SimulateArguments& arguments, Simulation& simulation) {
   }
 }
 
+void print_failure(const Simulation& simulation, const Run& run) {
+  fmt::print(stderr, "flexarm: simulation failed after t = {:.17g} s: {}\n", simulation.time(),
+             simulation.explain(run.last));
+}
+
 /// Prints what went wrong and where the last good state is.
 void report_failure(const SimulateArguments& arguments, const Simulation& simulation, const Run& run) {
   const std::string kept = !arguments.checkpoint.empty()
                                ? arguments.checkpoint
                                : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
-  fmt::print(stderr, "flexarm: simulation failed after t = {:.17g} s: {}\n", simulation.time(),
-             simulation.explain(run.last));
+  print_failure(simulation, run);
   write_checkpoint(simulation, kept);
   fmt::print(stderr, "flexarm: the last good state is kept in '{}'\n", kept);
 }
@@ -178,6 +186,29 @@ void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   }
 }
 
+/// Whether a run that failed may be done again from its beginning: nobody has read its results yet, and no state of it
+/// is kept, which would have another mesh than the scene.
+bool may_be_repeated(const SimulateArguments& arguments, const Simulation& simulation) {
+  std::error_code none;
+  const bool is_file =
+      !is_standard_output(arguments.output) && std::filesystem::is_regular_file(arguments.output, none);
+  return (is_file || arguments.output.empty()) && arguments.resume.empty() && arguments.checkpoint.empty() &&
+         !arguments.estimates_error && !wanted_accuracy(arguments, simulation);
+}
+
+/// The scene for another run, after one that failed since elements of a beam with refine="auto" have wound up: with
+/// refine="true" where possible. These elements cannot be halved as late as that. (docs/notes/refinement.md 9)
+/// @returns nothing if the run must not be repeated
+std::optional<scene::SceneDescription> scene_to_repeat(const SimulateArguments& arguments,
+                                                       scene::SceneDescription scene, const Simulation& simulation,
+                                                       const StepResult& last) {
+  if (last.reason != StepResult::Reason::BentTooFar || !may_be_repeated(arguments, simulation)) return std::nullopt;
+  const std::optional<bool>& refine = scene.links[last.failure.place.link].beam->refine;
+  const bool was_open = !refine;
+  refine_where_possible(scheme_of(simulation), model_of(simulation), scene);
+  return was_open && refine ? std::optional(std::move(scene)) : std::nullopt;
+}
+
 }  // namespace
 
 int simulate(SimulateArguments arguments) {
@@ -186,13 +217,23 @@ int simulate(SimulateArguments arguments) {
   // With checkpoints factorisations are not reused, so that a resumed run gives the same numbers as an uninterrupted
   // one.
   options.reuse_factorisation = arguments.resume.empty() && arguments.checkpoint.empty();
-  Simulation simulation = load_simulation(arguments.scene, options);
+  const scene::SceneDescription scene = *read_scene(arguments.scene).scene;
+  Simulation simulation = started(scene, options);
   prepare_files(arguments, simulation);
   check_duration(arguments, simulation);
   const double begin = simulation.time();
   if (!arguments.vtk.empty() || is_page(arguments.output)) arguments.picture = picture_for(arguments, simulation);
   catch_interruptions();
-  const Run result = run_and_keep(arguments, simulation);
+  Run result = run_and_keep(arguments, simulation);
+  if (std::optional<scene::SceneDescription> again = scene_to_repeat(arguments, scene, simulation, result.last)) {
+    print_failure(simulation, result);
+    fmt::print(
+        stderr,
+        "flexarm: warning: the run is repeated from its beginning with refine=\"true\" of beams; to prevent this, "
+        "write refine=\"false\"\n");
+    simulation = Simulation(std::move(*again), options);
+    result = run_and_keep(arguments, simulation);
+  }
   print_warnings(simulation, result);
   if (!result.last.converged) {
     report_failure(arguments, simulation, result);

@@ -122,15 +122,15 @@ void read_orientation(const XmlElement& beam, const std::optional<Vector3>& tang
     orientation->attribute_error("y", "y must not be parallel to the centreline's first tangent");
 }
 
-constexpr Choice<bool> kRefines[] = {{"true", true}, {"false", false}};
+constexpr Choice<std::optional<bool>> kRefines[] = {{"auto", {}}, {"true", true}, {"false", false}};
 
 void read_mesh(const XmlElement& beam, BeamDescription& description) {
   const char* elements = beam.xml().Attribute("elements");
   if (elements && std::string_view(elements) != "auto")
     description.elements = beam.integer("elements", 0, kMostBeamElements, " or 'auto'");
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
-  description.refine = read_choice(beam, "refine", kRefines, false);
-  if (!description.refine) return;
+  description.refine = read_choice(beam, "refine", kRefines, {});
+  if (!description.refine.value_or(false)) return;
   if (description.order != 2)
     beam.attribute_error("refine",
                          fmt::format("elements of order 2 can be halved, not those of order {}", description.order));

@@ -11,6 +11,7 @@
 #include "building/beam_mesh.h"
 #include "elements/halved_beam.h"
 #include "flexarm/model/model_error.h"
+#include "scene/flexible_link.h"
 
 namespace flexarm {
 namespace {
@@ -69,13 +70,40 @@ void for_each_divisible(const Model& model, const Visit& visit) {
 }
 
 bool is_refined(const scene::LinkDescription& link) {
-  return link.beam && link.beam->refine;
+  return link.beam && link.beam->refine.value_or(false);
 }
 
 /// Whether the scheme keeps nothing at integration points but what can be extended over a half.
 bool can_refine(const Scheme& scheme) {
   return !scheme.tableau && scheme.is_incremental() && scheme.nodal_rotary_inertia &&
          scheme.interpolation == Interpolation::Local;
+}
+
+/// Why the elements of a beam cannot be halved in a simulation of the scene; empty if they can.
+std::string obstacle_to_halving(const scene::SceneDescription& scene, const scene::LinkDescription& link,
+                                const Scheme& scheme, const Model& model) {
+  if (!can_refine(scheme))
+    return fmt::format(
+        "scheme '{}' has no <beam refine=\"true\">, expected one of the energy-momentum family: em, em0, em_symmetric, "
+        "em4, edmc1, edmc2",
+        scheme.name);
+  for (const TouchingPair& pair : model.touching_pairs)
+    if (pair.first == link.name || pair.second == link.name)
+      return fmt::format(
+          "refine=\"true\" is not possible for a beam that may touch something, here '{}' and '{}': its contact points "
+          "belong to its elements. Expected refine=\"false\", or a <no_contact> of these two",
+          pair.first, pair.second);
+  for (const scene::JointDescription& joint : scene.joints)
+    if (joint.slide && joint.parent == link.name && !scene.loop_joints.empty())
+      return fmt::format(
+          "refine=\"true\" moves what slides there (joint '{}') a little, which would open loops: expected "
+          "refine=\"false\" in a scene with a <loop_joint>",
+          joint.name);
+  for (const scene::JointDescription& joint : scene.loop_joints)
+    if (joint.slide && joint.parent == link.name)
+      return fmt::format(
+          "refine=\"true\" is not possible where the <loop_joint> '{}' slides, expected refine=\"false\"", joint.name);
+  return "";
 }
 
 }  // namespace
@@ -158,30 +186,15 @@ std::string halving_flaw(const Model& model, const std::vector<HalvedElement>& h
 void require_suitable_refinement(const scene::SceneDescription& scene, const Scheme& scheme, const Model& model) {
   for (const scene::LinkDescription& link : scene.links) {
     if (!is_refined(link)) continue;
-    if (!can_refine(scheme))
-      refuse_refinement(
-          link, fmt::format("scheme '{}' has no <beam refine=\"true\">, expected one of the energy-momentum family: "
-                            "em, em0, em_symmetric, em4, edmc1, edmc2",
-                            scheme.name));
-    for (const TouchingPair& pair : model.touching_pairs)
-      if (pair.first == link.name || pair.second == link.name)
-        refuse_refinement(
-            link, fmt::format("refine=\"true\" is not possible for a beam that may touch something, here '{}' and "
-                              "'{}': its contact points belong to its elements. Expected refine=\"false\", or a "
-                              "<no_contact> of these two",
-                              pair.first, pair.second));
-    for (const scene::JointDescription& joint : scene.joints)
-      if (joint.slide && joint.parent == link.name && !scene.loop_joints.empty())
-        refuse_refinement(link,
-                          fmt::format("refine=\"true\" moves what slides there (joint '{}') a little, which would open "
-                                      "loops: expected refine=\"false\" in a scene with a <loop_joint>",
-                                      joint.name));
-    for (const scene::JointDescription& joint : scene.loop_joints)
-      if (joint.slide && joint.parent == link.name)
-        refuse_refinement(link,
-                          fmt::format("refine=\"true\" is not possible where the <loop_joint> '{}' slides, expected "
-                                      "refine=\"false\"",
-                                      joint.name));
+    if (const std::string obstacle = obstacle_to_halving(scene, link, scheme, model); !obstacle.empty())
+      refuse_refinement(link, obstacle);
+  }
+}
+
+void refine_where_possible(const Scheme& scheme, const Model& model, scene::SceneDescription& scene) {
+  for (scene::LinkDescription& link : scene.links) {
+    const bool is_open = scene::is_flexible(link) && link.beam->order == kOrder && !link.beam->refine;
+    if (is_open && obstacle_to_halving(scene, link, scheme, model).empty()) link.beam->refine = true;
   }
 }
 

@@ -47,6 +47,9 @@ std::string halving_flaw(const Model& model, const std::vector<HalvedElement>& h
 /// @throws ModelError naming a beam with refine="true" that the scheme or something else in the scene does not allow.
 void require_suitable_refinement(const scene::SceneDescription& scene, const Scheme& scheme, const Model& model);
 
+/// Sets refine="true" for all beams with refine="auto" that allow it in a simulation of the scene with this model.
+void refine_where_possible(const Scheme& scheme, const Model& model, scene::SceneDescription& scene);
+
 /// @throws ModelError if a beam has refine="true". `what`: a computation that cannot take along changes of the mesh,
 /// such as "a run to an accuracy".
 void require_constant_mesh(const scene::SceneDescription& scene, const std::string& what);

@@ -134,7 +134,7 @@ class SceneParts {
                  mass_damping, maxwell, prestrain, hubs, location] = beam;
     all("elements", elements, "order", order, "centreline", centreline, "section_y", section_y, "section", section,
         "stiffness_damping", stiffness_damping, "mass_damping", mass_damping, "hubs", hubs);
-    if (refine) all("refine", refine);
+    if (refine.value_or(false)) all("refine", true);
     if (damping_shares != Vector6::Ones()) all("damping_shares", damping_shares);
     for (const auto& [modulus_ratio, relaxation_time] : maxwell)
       all("modulus_ratio", modulus_ratio, "relaxation_time", relaxation_time);

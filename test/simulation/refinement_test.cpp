@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -366,6 +367,46 @@ TEST(Refinement, IsRefusedWhereItIsNotPossible) {
   Simulation simulation(flying_rod(true).scene);
   RunWatcher watcher;
   EXPECT_THROW(run_to_accuracy(simulation, {0.01, 0.1}, watcher), ModelError);
+}
+
+TEST(Refinement, LeftOpenIsTrueOnlyWhereItIsPossible) {
+  const auto refined = [](scene::SceneDescription scene) {
+    const Simulation simulation(scene);
+    refine_where_possible(scheme_of(simulation), model_of(simulation), scene);
+    std::vector<std::optional<bool>> out;
+    for (const scene::LinkDescription& link : scene.links)
+      if (link.beam) out.push_back(link.beam->refine);
+    Simulation again(scene);  // does not refuse it
+    return out;
+  };
+  using Refine = std::vector<std::optional<bool>>;
+  const auto rod = [](const char* scheme, int order, int elements) {
+    SceneBuilder b;
+    b.scene.integrator.scheme = scheme;
+    b.beam("rod", {{1, 0, 0}}, section(1e5, 4e4, 0.08, 0.1, 0.1, 2e-6, 1e-6), elements, order);
+    b.joint("clamp", JointKind::Revolute, "world", "rod");
+    return b.scene;
+  };
+  EXPECT_EQ(refined(rod("em", 2, 4)), Refine{true});
+  EXPECT_EQ(refined(rod("em", 3, 4)), Refine{std::nullopt});
+  EXPECT_EQ(refined(rod("em", 2, 0)), Refine{std::nullopt});
+  EXPECT_EQ(refined(rod("m1", 2, 4)), Refine{std::nullopt});
+  EXPECT_EQ(refined(flying_rod(false).scene), Refine{false});
+  const scene::ReadResult wiper = scene::read_scene_file(source_path("config/examples/wiper.urdf"));
+  ASSERT_TRUE(wiper.scene);
+  for (const std::optional<bool>& beam : refined(*wiper.scene)) EXPECT_FALSE(beam.has_value());
+}
+
+TEST(Refinement, LeftOpenIsFalseInSteps) {
+  SceneBuilder open = flying_rod(false);
+  open.scene.links.back().beam->refine = std::nullopt;
+  Simulation simulation(open.scene), plain(flying_rod(false).scene);
+  EXPECT_FALSE(refines(model_of(simulation)));
+  for (int n = 0; n < 100; ++n) ASSERT_EQ(simulation.step().converged, plain.step().converged);
+  EXPECT_EQ(checkpoint_text(simulation), checkpoint_text(plain));
+  RunWatcher watcher;
+  simulation.reset();
+  EXPECT_NO_THROW(run_to_accuracy(simulation, {0.01, 0.01}, watcher));
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ struct HalvedPart {
 struct BeamDescription {
   std::optional<int> elements;     ///< number of elements; empty: chosen automatically; 0: the beam is rigid
   int order = 2;                   ///< 1..4, nodes per element minus one
-  bool refine = false;             ///< whether elements are halved while they are strongly bent
+  std::optional<bool> refine;      ///< whether strongly bent elements are halved; empty: only in runs that would fail
   std::vector<HalvedPart> halved;  ///< the parts that are halved now, with all parts that contain them
   std::vector<CentrelinePiece> centreline;
   std::optional<Vector3> section_y;  ///< section's y axis at arc length 0, in the link frame; empty: a default axis
