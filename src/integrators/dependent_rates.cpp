@@ -68,9 +68,9 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
     for (int k = 0; k < released_count(model.joints[j].kind); ++k) places_[bodies.first_rate(j) + k] = {j, k};
   const auto rate_of = [&](const Coordinate& c) { return bodies.first_rate(c.joint) + c.component; };
   for (const Coordinate& c : model.coordinates)
-    if (c.motion >= 0) motions_.push_back({rate_of(c), c.joint, c.motion, {}});
+    if (c.motion >= 0 && !is_held(model, c)) motions_.push_back({rate_of(c), c.joint, c.motion, {}});
   for (const Coordinate& c : model.coordinates) {
-    if (c.mimicked < 0) continue;
+    if (c.mimicked < 0 || is_held(model, c)) continue;
     const Coordinate& leader = model.coordinates[c.mimicked];
     followers_.push_back({rate_of(c), c.joint, rate_of(leader), leader.joint, &c.mimic});
   }
@@ -85,6 +85,7 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
     root_column_[roots_[column]] = static_cast<int>(column);
   for (const Follower& follower : followers_) root_column_[follower.rate] = root_column_[follower.leader_rate];
   for_each_constraint(model, [&](int, const LoopClosure&, const ClosureConstraint&) { ++rows_; });
+  closure_forces_.assign(model.closures.size(), Vector6::Zero());
   any_ = !motions_.empty() || !followers_.empty() || rows_ > 0;
   if (!any_) return;
 
@@ -282,6 +283,33 @@ void DependentRates::accelerate(std::size_t stage, const double* efforts, const 
   drives_.noalias() = -columns_.leftCols(moved).transpose() * forces_;
   bodies.set_accelerations(change_.data());
   std::copy_n(change_.data(), rates_, rates_change);
+}
+
+void DependentRates::add_closure_forces(ArticulatedBodies& bodies) {
+  if (rows_ == 0) return;
+  // Where a dependent coordinate is not in balance, the multipliers make up for it.
+  values_.setZero();
+  for (int rate = 0; rate < rates_; ++rate)
+    for (int i = 0; i < rows_; ++i)
+      if (root_column_[rate] == dependent_[i]) values_[i] -= factors_[rate] * forces_[rate];
+  // With P J_D = L U; Eigen's own solution with the transpose allocates memory.
+  loops_.matrixLU().triangularView<Eigen::Upper>().transpose().solveInPlace(values_);
+  loops_.matrixLU().triangularView<Eigen::UnitLower>().transpose().solveInPlace(values_);
+  right_.noalias() = loops_.permutationP().transpose() * values_;
+  int row = 0;
+  for (std::size_t i = 0; i < model_.closures.size(); ++i) {
+    const LoopClosure& closure = model_.closures[i];
+    const ClosurePoses poses = poses_of(closure, bodies);
+    Vector6 &on_child = closure_forces_[i], on_parent = Vector6::Zero();
+    on_child.setZero();
+    for (const ClosureConstraint& constraint : closure.constraints) {
+      const ClosureRows rows = closure_rows(closure, constraint, poses);
+      const double force = right_[row++] / constraint_scale(constraint, model_);
+      on_child += force * rows.child, on_parent += force * rows.parent;
+    }
+    if (closure.child >= 0) bodies.add_force(closure.child, on_child);
+    if (closure.parent >= 0) bodies.add_force(closure.parent, on_parent);
+  }
 }
 
 double DependentRates::strike(const double* before, const double* armatures, ArticulatedBodies& bodies, double* rates) {

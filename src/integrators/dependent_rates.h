@@ -39,6 +39,11 @@ class DependentRates {
                   double* rates_change);
   /// The effort that drives a prescribed coordinate, given by its rate.
   double drive(int rate) const { return drives_[root_column_[rate]]; }
+  /// Adds the forces that loop joints transmit to the bodies, and keeps them. To be called after accelerate(), when the
+  /// bodies have been set anew to the same numbers.
+  void add_closure_forces(ArticulatedBodies& bodies);
+  /// Per closure: {force, moment about the node} on its child, world axes.
+  const std::vector<Vector6>& closure_forces() const { return closure_forces_; }
   /// If the rates of motions jump at the beginning of a step, changes the others as the impulse of the drives does.
   /// `before`: rates so far. Returns the work of the impulse [J].
   double strike(const double* before, const double* armatures, ArticulatedBodies& bodies, double* rates);
@@ -79,6 +84,7 @@ class DependentRates {
   std::vector<int> roots_;                    // rates of the roots, by column
   std::vector<int> dependent_, independent_;  // columns of roots that loops make dependent, and of the others
   std::vector<Place> places_;                 // per rate
+  std::vector<Vector6> closure_forces_;
   double step_ = 0;
   Eigen::VectorXd values_, drives_, follower_bends_, bend_, needed_, forces_, change_, reduced_, right_, root_rates_;
   Eigen::MatrixXd rows_of_rates_, jacobian_, block_, transfer_, columns_, mass_, moved_, small_;

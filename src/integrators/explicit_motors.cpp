@@ -51,21 +51,24 @@ void ExplicitMotors::begin(const State& state, double step) {
     const Servo& servo = *model_.actuators[i].servo;
     const ActuatorState& own = state.actuators[i];
     const TimeFunction* history = set_point_function(model_, servo, own.servo);
+    const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
     if (servo.sample_time > 0)
-      take_sample(model_.actuators[i], own, sampled_[i]);
+      take_sample(model_.actuators[i], own, state.released[coordinate.joint].displacement[coordinate.component],
+                  sampled_[i]);
     else if (history && varies_[servo.set_point])
       StageDerivatives::sample(*history, begin_, step, samples_[i]);
     if (servo.sample_time > 0) held_[i] = held_output(servo, sampled_[i], begin_, step);
   }
 }
 
-void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& own, ServoState& servo) const {
+void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& own, double link_position,
+                                 ServoState& servo) const {
   const Servo& data = *actuator.servo;
   servo = own.servo;
   ServoInput input;
   input.time = begin_;
   input.measured.step = step_;
-  input.measured.begin = own.angle;
+  input.measured.begin = data.on_link ? link_position : own.angle;
   const TimeFunction* history = set_point_function(model_, data, own.servo);
   const double set = set_point_at(model_, data, own.servo, begin_);
   input.set_point = {set, set};
@@ -101,22 +104,24 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
 
 // ---------------------------------------------------------------- efforts
 
-double ExplicitMotors::effort(std::size_t actuator, const State& state, double other, double position, double rate,
-                              double integral, double& integral_rate) const {
+double ExplicitMotors::effort(std::size_t actuator, const State& state, double other,
+                              const ExplicitRotors::Motion& rotor, const ExplicitRotors::Motion& link, double integral,
+                              double& integral_rate) const {
   const Actuator& data = model_.actuators[actuator];
   integral_rate = 0;
-  const MotorRange range = motor_range(data.drive, servo_limit(model_, data), rate);
+  const MotorRange range = motor_range(data.drive, servo_limit(model_, data), rotor.rate);
   if (!data.servo) return std::clamp(other, range.lowest, range.highest);
   const Servo& servo = *data.servo;
   const Input& input = inputs_[actuator];
   if (input.off > 0) return 0;
   if (servo.sample_time > 0) return std::clamp(other + input.held, range.lowest, range.highest);
   const ServoLaw& law = law_of(servo, state.actuators[actuator].servo);
-  const ServoInstant at{input.set_point, input.set_rate, position, rate, integral, input.feedforward};
+  const ExplicitRotors::Motion& measured = servo.on_link ? link : rotor;
+  const ServoInstant at{input.set_point, input.set_rate, measured.angle, measured.rate, integral, input.feedforward};
   const double demand = other + servo_effort(law, at), given = std::clamp(demand, range.lowest, range.highest);
   if (law.mode == ServoMode::Effort) return given;
   const bool is_velocity = law.mode == ServoMode::Velocity;
-  integral_rate = input.set_point - (is_velocity ? rate : position);
+  integral_rate = input.set_point - (is_velocity ? measured.rate : measured.angle);
   const double gain = is_velocity ? law.proportional : law.integral;
   if (law.tracking_time > 0 && gain > 0) integral_rate += (given - demand) / (gain * law.tracking_time);
   return given;
@@ -153,12 +158,14 @@ double ExplicitMotors::later_impulse(std::size_t actuator, const State& state,
   return impulse_by(actuator, state, first_[actuator], set_point_at_border(*history, begin_ + step_, step_), smooth);
 }
 
-void ExplicitMotors::accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const {
+void ExplicitMotors::accept(std::size_t actuator, double step, const ExplicitRotors::Motion& rotor,
+                            const ExplicitRotors::Motion& link, double integral, ServoState& servo) const {
   if (!has_servo(actuator)) return;
   if (model_.actuators[actuator].servo->sample_time > 0) {
     servo = sampled_[actuator];
   } else {
     const Input& input = inputs_[actuator];
+    const double rate = (model_.actuators[actuator].servo->on_link ? link : rotor).rate;
     const bool is_velocity = law_of(*model_.actuators[actuator].servo, servo).mode == ServoMode::Velocity;
     servo.integral = integral;
     servo.average = step * ((is_velocity ? input.set_point : input.set_rate) - rate);

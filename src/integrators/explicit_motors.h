@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "integrators/explicit_rotors.h"
 #include "integrators/stage_derivatives.h"
 #include "joints/servo_step.h"
 #include "model/model.h"
@@ -10,8 +11,8 @@
 
 namespace flexarm {
 
-/// The motors of a model whose gears are rigid, so that they turn with their coordinates. Allocates no memory after
-/// construction.
+/// The motors of a model, whose rotors turn with their coordinates or, behind elastic gears, by themselves. Allocates
+/// no memory after construction.
 class ExplicitMotors {
  public:
   ExplicitMotors(const Model& model, const ExplicitTableau& tableau);
@@ -26,15 +27,17 @@ class ExplicitMotors {
   void keep_inputs() { kept_inputs_ = inputs_; }
 
   /// The motor's effort at the instant [N m or N]. `other`: effort of the scene or of commands on its coordinate.
-  /// `integral`: of its servo. `integral_rate`: output, the derivative of the integral.
-  double effort(std::size_t actuator, const State& state, double other, double position, double rate, double integral,
-                double& integral_rate) const;
-  /// The impulse on the coordinate by what jumps of the set point, times the gain of the derivative: at the beginning
+  /// `link`: motion of the coordinate. `integral`: of its servo. `integral_rate`: output, the derivative of the
+  /// integral.
+  double effort(std::size_t actuator, const State& state, double other, const ExplicitRotors::Motion& rotor,
+                const ExplicitRotors::Motion& link, double integral, double& integral_rate) const;
+  /// The impulse of the motor by what jumps of the set point, times the gain of the derivative: at the beginning
   /// of the step, or in it after that. It is zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
   double first_impulse(std::size_t actuator, const State& state) const;
   double later_impulse(std::size_t actuator, const State& state, const std::vector<double>& weights) const;
   /// Writes the servo's state at the end of the step.
-  void accept(std::size_t actuator, double step, double rate, double integral, ServoState& servo) const;
+  void accept(std::size_t actuator, double step, const ExplicitRotors::Motion& rotor,
+              const ExplicitRotors::Motion& link, double integral, ServoState& servo) const;
 
  private:
   /// What a servo is given from outside at an instant.
@@ -49,7 +52,7 @@ class ExplicitMotors {
   double impulse_by(std::size_t actuator, const State& state, double from, double to, double smooth) const;
   /// Whether an actuator has a servo that moves its coordinate.
   bool has_servo(std::size_t actuator) const;
-  void take_sample(const Actuator& actuator, const ActuatorState& own, ServoState& servo) const;
+  void take_sample(const Actuator& actuator, const ActuatorState& own, double link_position, ServoState& servo) const;
 
   const Model& model_;
   StageDerivatives derivatives_;

@@ -8,7 +8,6 @@ const char* explicit_obstacle(const Model& model) {
   if (has_beams) return "flexible links";
   if (!model.slide_lines.empty()) return "sliders";
   if (!model.force_elements.empty()) return "springs, lines, drag or contacts";
-  if (!model.held.empty()) return "joints that a motion holds";
   for (const Coordinate& coordinate : model.coordinates) {
     const bool depends = coordinate.motion >= 0 || coordinate.mimicked >= 0;
     if (depends && model.joints[coordinate.joint].kind != JointMapKind::Scalar)
@@ -17,11 +16,11 @@ const char* explicit_obstacle(const Model& model) {
     if (coordinate.friction_coefficient > 0) return "friction that depends on the load";
   }
   for (const Actuator& actuator : model.actuators) {
-    if (actuator.drive.gear || actuator.gyroscope) return "rotors with a motion of their own";
-    if (actuator.drive.loss > 0) return "losses of gears";
-    if (actuator.spring && actuator.spring->elasticity.backlash > 0) return "play";
+    const Drive& drive = actuator.drive;
+    if (!drive.gear && actuator.gyroscope) return "gyroscopic rotors of rigid gears";
+    if (!drive.gear && drive.loss > 0) return "losses of rigid gears";
+    if (drive.gear && drive.sticks && drive.friction + drive.loss > 0) return "dry friction";
   }
-  if (!model.reactions.empty()) return "sensors of reactions";
   return nullptr;
 }
 

@@ -5,14 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "elements/load.h"
 #include "flexarm/model/model_error.h"
+#include "integrators/explicit_loads.h"
 #include "integrators/explicit_obstacle.h"
-#include "integrators/step_histories.h"
-#include "joints/joint_forces.h"
 #include "joints/joint_kinematics.h"
 #include "math/so3.h"
-#include "model/carried_origin.h"
 #include "schemes/explicit_tableau.h"
 
 namespace flexarm {
@@ -52,10 +49,13 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
       bodies_(model),
       dependent_(model, bodies_, tableau_),
       motors_(model, tableau_),
+      rotors_(model),
+      reactions_(model),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
       applied_(model.coordinates.size()),
+      impulses_(model.actuators.size()),
       values_(model.histories.size()) {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const std::optional<double> constant = model.histories[i].constant();
@@ -69,15 +69,18 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
   }
   work_ = rates_ + bodies_.rate_count();
   integrals_ = work_ + 2;
+  own_ = integrals_ + model.actuators.size();
   efforts_.resize(bodies_.rate_count());
   no_efforts_.resize(bodies_.rate_count());
   armatures_.resize(bodies_.rate_count());
+  penalties_.reserve(model.coordinates.size()), places_.reserve(model.coordinates.size());
   for (const Coordinate& coordinate : model.coordinates) {
-    armatures_[joints_[coordinate.joint].first_rate + coordinate.component] = armature(model, coordinate);
     penalties_.push_back(stop_penalty(coordinate, scheme.contact_time));
+    places_.push_back(is_held(model, coordinate) ? -1 : joints_[coordinate.joint].first_rate + coordinate.component);
+    if (places_.back() >= 0) armatures_[places_.back()] = armature(model, coordinate);
   }
   for (std::vector<double>* numbers : {&begin_, &stage_, &before_, &last_change_})
-    numbers->resize(integrals_ + model.actuators.size());
+    numbers->resize(own_ + rotors_.size());
   changes_.assign(tableau_.weights.size(), begin_);
   last_commands_.resize(model.coordinates.size());
 }
@@ -96,6 +99,7 @@ void ExplicitStep::pack(const State& state) {
   }
   write_positions(begin_);
   for (std::size_t i = 0; i < state.actuators.size(); ++i) begin_[integrals_ + i] = state.actuators[i].servo.integral;
+  rotors_.pack(state, begin_.data() + own_);
 }
 
 void ExplicitStep::write_positions(std::vector<double>& numbers) const {
@@ -133,7 +137,10 @@ bool ExplicitStep::is_as_left(const State& state) const {
     return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs() && a.velocity == b.velocity &&
            a.angular_velocity == b.angular_velocity;
   };
-  return std::equal(state.nodes.begin(), state.nodes.end(), last_nodes_.begin(), last_nodes_.end(), same);
+  for (std::size_t i = 0; i < state.actuators.size(); ++i)
+    if (state.actuators[i].servo.integral != stage_[integrals_ + i]) return false;
+  return rotors_.are_those_of(state, stage_.data() + own_) &&
+         std::equal(state.nodes.begin(), state.nodes.end(), last_nodes_.begin(), last_nodes_.end(), same);
 }
 
 /// Whether the derivatives at the end of the last step hold at the beginning of this one.
@@ -211,75 +218,10 @@ void ExplicitStep::accelerate(std::size_t stage, const double* efforts, std::vec
 void ExplicitStep::add_drives(const double* rates, std::vector<double>& change) {
   if (!dependent_.has_motions()) return;
   for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
-    const Coordinate& coordinate = model_.coordinates[i];
-    if (coordinate.motion < 0) continue;
-    const int at = joints_[coordinate.joint].first_rate + coordinate.component;
-    applied_[i] = dependent_.drive(at);
-    change[work_] += applied_[i] * rates[at];
+    if (model_.coordinates[i].motion < 0 || places_[i] < 0) continue;
+    applied_[i] = dependent_.drive(places_[i]);
+    change[work_] += applied_[i] * rates[places_[i]];
   }
-}
-
-/// Sets the efforts on all rates. Adds their work and what they dissipate to `change`.
-void ExplicitStep::find_efforts(const State& state, const std::vector<double>& numbers, std::vector<double>& change) {
-  for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
-    const Coordinate& coordinate = model_.coordinates[i];
-    const int at = joints_[coordinate.joint].first_rate + coordinate.component;
-    const double rate = numbers[rates_ + at];
-    const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
-    applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
-    const double position = coordinate.is_angle ? 0 : released_[coordinate.joint].displacement[coordinate.component];
-    if (coordinate.motion >= 0) {
-      applied_[i] = 0;  // until the motion is known to need one
-    } else if (coordinate.actuator >= 0) {
-      const std::size_t integral = integrals_ + coordinate.actuator;
-      applied_[i] =
-          motors_.effort(coordinate.actuator, state, applied_[i], position, rate, numbers[integral], change[integral]);
-    }
-    double& effort = efforts_[at] = applied_[i];
-    change[work_] += applied_[i] * rate;
-    if (resists(coordinate)) {
-      CoordinateStep now{position, position, rate, 1};
-      now.at_end = true;
-      const double passive = passive_effort(coordinate, penalties_[i], now).effort;
-      now.increment = 0;
-      const double elastic = passive_effort(coordinate, penalties_[i], now).effort;
-      effort += passive;
-      change[work_ + 1] -= (passive - elastic) * rate;
-    }
-    if (coordinate.actuator < 0 || !model_.actuators[coordinate.actuator].spring) continue;
-    const JointSpring& spring = *model_.actuators[coordinate.actuator].spring;
-    effort -= spring.elasticity.stiffness * (position - spring.rest) + spring.elasticity.damping * rate;
-    change[work_ + 1] += spring.elasticity.damping * rate * rate;
-  }
-}
-
-void ExplicitStep::add_loads(const State& state, std::vector<double>& change) {
-  for (const NodalLoad& load : model_.loads) add_load(load, values_[load.history], change);
-  for (const NodalLoad& load : state.wrenches) {
-    add_load(load, 1, change);
-    if (load.pull.acts()) add_pull(load, world_origin(model_, state), change);
-  }
-}
-
-void ExplicitStep::add_load(const NodalLoad& load, double scale, std::vector<double>& change) {
-  const Matrix3& rotation = bodies_.rotation(load.node);
-  add_wrench(load.node, load_action(load, scale, rotation, rotation, LoadPoint::End).wrench, change);
-}
-
-void ExplicitStep::add_pull(const NodalLoad& load, const Vector3& origin, std::vector<double>& change) {
-  const Vector3 arm = bodies_.rotation(load.node) * load.arm;
-  const Vector6& velocity = bodies_.velocity(load.node);
-  const Vector3 place = origin + bodies_.position(load.node) + arm,
-                moving = velocity.head<3>() + velocity.tail<3>().cross(arm),
-                force = load.pull.stiffness * (load.pull.target - place) - load.pull.damping * moving;
-  Vector6 wrench;
-  wrench << force, arm.cross(force);
-  add_wrench(load.node, wrench, change);
-}
-
-void ExplicitStep::add_wrench(int node, const Vector6& wrench, std::vector<double>& change) {
-  bodies_.add_force(node, wrench);
-  change[work_] += wrench.dot(bodies_.velocity(node));
 }
 
 // ---------------------------------------------------------------- the step
@@ -295,29 +237,47 @@ bool ExplicitStep::begin_dependent(const State& state, double step, double& work
   return true;
 }
 
+/// Finds the impulses of servos at the beginning of the step (stage 0), or later in it: of motors, and on rates.
+/// Returns whether there are any.
+bool ExplicitStep::find_impulses(const State& state, std::size_t stage) {
+  std::fill(efforts_.begin(), efforts_.end(), 0.0);
+  bool jumps = false;
+  for (std::size_t i = 0; i < impulses_.size(); ++i) {
+    impulses_[i] = stage == 0 ? motors_.first_impulse(i, state) : motors_.later_impulse(i, state, tableau_.weights);
+    jumps = jumps || impulses_[i] != 0;
+    if (rotors_.place(i) < 0) efforts_[places_[model_.actuators[i].coordinate]] += impulses_[i];
+  }
+  return jumps;
+}
+
+/// Half of the work of impulses on rotors with a motion of their own, if all of it were done at their present rates.
+double ExplicitStep::half_work_on_rotors(const std::vector<double>& numbers) const {
+  double work = 0;
+  for (std::size_t i = 0; i < impulses_.size(); ++i)
+    if (rotors_.place(i) >= 0) work += 0.5 * impulses_[i] * rotors_.motion(i, numbers.data() + own_, {}, bodies_).rate;
+  return work;
+}
+
 /// Where set points jump at the beginning of the step (stage 0), or later in it, changes the rates by the impulses of
 /// servos: among these numbers, which are those at the stage. Returns false if a loop cannot be closed.
 bool ExplicitStep::strike(const State& state, std::size_t stage, std::vector<double>& numbers) {
-  std::fill(efforts_.begin(), efforts_.end(), 0.0);
-  bool jumps = false;
-  for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
-    const double impulse =
-        stage == 0 ? motors_.first_impulse(i, state) : motors_.later_impulse(i, state, tableau_.weights);
-    const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
-    efforts_[joints_[coordinate.joint].first_rate + coordinate.component] += impulse;
-    jumps = jumps || impulse != 0;
-  }
-  if (!jumps) return true;
+  if (!find_impulses(state, stage)) return true;
   // Accelerations are affine in efforts, so the change of rates is a difference of two.
   if (!place(stage, numbers)) return false;
   accelerate(stage, no_efforts_.data(), changes_[0]);
   if (!place(stage, numbers)) return false;
+  numbers[work_] += half_work_on_rotors(numbers);
+  for (std::size_t i = 0; i < impulses_.size(); ++i)
+    if (rotors_.place(i) >= 0) rotors_.strike(i, impulses_[i], numbers.data() + own_, bodies_);
   accelerate(stage, efforts_.data(), last_change_);
   for (std::size_t i = 0; i < efforts_.size(); ++i) {
     const double change = last_change_[rates_ + i] - changes_[0][rates_ + i];
     numbers[work_] += efforts_[i] * (numbers[rates_ + i] + 0.5 * change);
     numbers[rates_ + i] += change;
   }
+  if (rotors_.size() == 0) return true;
+  bodies_.set(released_, numbers.data() + rates_);
+  numbers[work_] += half_work_on_rotors(numbers);
   return true;
 }
 
@@ -381,19 +341,41 @@ void ExplicitStep::write(State& state, double step) {
     to.angular_acceleration = to_node * bodies_.acceleration(node).tail<3>();
   }
   for (std::size_t i = 0; i < applied_.size(); ++i) state.efforts[i] = applied_[i];
-  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
-    const Coordinate& coordinate = model_.coordinates[model_.actuators[i].coordinate];
-    state.actuators[i].angle = released_[coordinate.joint].displacement[coordinate.component];
-    double& rate = state.actuators[i].rate =
-        stage_[rates_ + joints_[coordinate.joint].first_rate + coordinate.component];
-    motors_.accept(i, step, rate, stage_[integrals_ + i], state.actuators[i].servo);
-  }
+  write_actuators(state, step);
   state.history.clear();
   state.time = last_time_ = state.time + step;
   std::copy(state.commands.begin(), state.commands.end(), last_commands_.begin());
   last_nodes_ = state.nodes;
   last_values_ = values_;
   motors_.keep_inputs();
+  if (reactions_.any()) write_reactions(state);
+}
+
+void ExplicitStep::write_actuators(State& state, double step) {
+  const double* own = stage_.data() + own_;
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
+    ActuatorState& actuator = state.actuators[i];
+    const ExplicitRotors::Motion link = link_motion(model_.actuators[i].coordinate, stage_);
+    const int place = rotors_.place(i);
+    actuator.angle = place < 0 ? link.angle : own[place];
+    actuator.rate = place < 0 ? link.rate : own[place + 1];
+    double& integral = stage_[integrals_ + i];
+    motors_.accept(i, step, rotors_.motion(i, own, link, bodies_), link, integral, actuator.servo);
+    integral = actuator.servo.integral;
+  }
+}
+
+/// Inverse dynamics at the end of the step, with the accelerations there.
+void ExplicitStep::write_reactions(State& state) {
+  const double* rate_changes = last_change_.data() + rates_;
+  bodies_.set(released_, stage_.data() + rates_);
+  for_each_load(model_, state, values_, bodies_,
+                [&](const NodalLoad& load, const Vector6& wrench) { bodies_.add_force(load.node, wrench); });
+  rotors_.add_moments(bodies_);
+  if (dependent_.any()) dependent_.add_closure_forces(bodies_);
+  bodies_.set_accelerations(rate_changes);
+  bodies_.find_needed_efforts(rate_changes, armatures_.data(), efforts_.data());
+  reactions_.accept(bodies_, dependent_.closure_forces(), values_, state);
 }
 
 }  // namespace flexarm

@@ -6,6 +6,8 @@
 #include "flexarm/model/results.h"
 #include "integrators/dependent_rates.h"
 #include "integrators/explicit_motors.h"
+#include "integrators/explicit_reactions.h"
+#include "integrators/explicit_rotors.h"
 #include "joints/articulated_bodies.h"
 #include "joints/joint_stop.h"
 #include "model/state.h"
@@ -16,8 +18,8 @@ namespace flexarm {
 /// Limit for the violation of a loop's implied constraints: far above the errors of Newton and of rounded input.
 constexpr double kOpenLoop = 1e-4;
 
-/// Integrates the released coordinates, their rates, the integrals of servos, and the work and the dissipation that the
-/// state adds up. Allocates no memory after construction.
+/// Integrates the released coordinates, their rates, the integrals of servos, the angles and rates of rotors behind
+/// elastic gears, and the work and the dissipation that the state adds up. Allocates no memory after construction.
 class ExplicitStep {
  public:
   /// The model must outlive the step.
@@ -49,35 +51,44 @@ class ExplicitStep {
   bool strike(const State& state, std::size_t stage, std::vector<double>& numbers);
   void add_drives(const double* rates, std::vector<double>& change);
   void add_loads(const State& state, std::vector<double>& change);
-  void add_load(const NodalLoad& load, double scale, std::vector<double>& change);
-  /// `origin`: of the state's positions, in the world.
-  void add_pull(const NodalLoad& load, const Vector3& origin, std::vector<double>& change);
-  void add_wrench(int node, const Vector6& wrench, std::vector<double>& change);
+  void add_passive(std::size_t coordinate, const ExplicitRotors::Motion& link, std::vector<double>& change);
+  void drive(std::size_t actuator, const State& state, const ExplicitRotors::Motion& link,
+             const std::vector<double>& numbers, std::vector<double>& change, double& applied);
+  ExplicitRotors::Motion link_motion(std::size_t coordinate, const std::vector<double>& numbers) const;
+  bool find_impulses(const State& state, std::size_t stage);
+  double half_work_on_rotors(const std::vector<double>& numbers) const;
   void normalise(std::vector<double>& numbers) const;
   void write_positions(std::vector<double>& numbers) const;
   bool is_as_left(const State& state) const;
   bool acts_as_before(const State& state) const;
   void write(State& state, double step);
+  void write_actuators(State& state, double step);
+  void write_reactions(State& state);
 
   const Model& model_;
   const ExplicitTableau& tableau_;
   ArticulatedBodies bodies_;
   DependentRates dependent_;
   ExplicitMotors motors_;
+  ExplicitRotors rotors_;
+  ExplicitReactions reactions_;
   std::vector<Joint> joints_;
   std::vector<StopPenalty> penalties_;  // per coordinate
+  std::vector<int> places_;             // per coordinate: its rate; -1: it is held
   std::vector<NodePose> poses_;
   std::vector<Vector6> velocities_;
   std::vector<Released> released_;
   std::vector<double> efforts_, no_efforts_, applied_, armatures_;  // per rate; `applied_`: per coordinate, not passive
-  /// Positions of all joints, their rates, work, dissipation, integrals of servos: at the beginning, and at a stage or
-  /// the end.
+  std::vector<double> impulses_;                                    // per actuator
+  /// Positions of all joints, their rates, work, dissipation, integrals of servos, unknowns of rotors: at the
+  /// beginning, and at a stage or the end.
   std::vector<double> begin_, stage_, before_;
   std::vector<std::vector<double>> changes_;  // per stage
   std::vector<double> last_change_, last_commands_;
-  std::size_t rates_ = 0, work_ = 0, integrals_ = 0;  // where the rates, work and dissipation, and integrals begin
-  std::vector<int> varying_;                          // functions of time that are not constant
-  std::vector<double> values_, last_values_;          // of all functions of time: now, and at the end of the last step
+  std::size_t rates_ = 0, work_ = 0, integrals_ = 0,
+              own_ = 0;                       // where the rates, work and dissipation, and so on begin
+  std::vector<int> varying_;                  // functions of time that are not constant
+  std::vector<double> values_, last_values_;  // of all functions of time: now, and at the end of the last step
   double last_time_ = 0;
   std::vector<NodeState> last_nodes_;  // as they were left; empty: there was no step
 };

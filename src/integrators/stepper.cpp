@@ -169,11 +169,13 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   if (!do_sub_steps(state, deadline, result)) return result;
   const double done = settings_.step - rest_;
   state.time = begin_ + done;
-  if (explicit_)
-    state.drives.restart(state.efforts);  // they are known at the end
-  else
+  if (explicit_) {  // they are known at the end
+    state.drives.restart(state.efforts);
+    state.transmitted.restart(state.last_transmitted);
+  } else {
     state.drives.end(done);
-  state.transmitted.end(done);
+    state.transmitted.end(done);
+  }
   if (follower_) follower_->end_step(done);
   if (rest_ == 0) ++state.steps;
   result.converged = true;

@@ -42,6 +42,12 @@ PassiveEffort elastic_effort(const Elasticity& elasticity, const CoordinateStep&
           viscous * twist.increment};
 }
 
+ElasticInstant elastic_instant(const Elasticity& elasticity, double twist, double rate) {
+  const Deflection now = deflection(elasticity, twist);
+  const double viscous = elasticity.damping * now.slope * rate;
+  return {-(elasticity.stiffness * now.value + viscous), viscous * rate};
+}
+
 double elastic_energy(const Elasticity& elasticity, double twist) {
   const double value = deflection(elasticity, twist).value;
   return 0.5 * elasticity.stiffness * value * value;

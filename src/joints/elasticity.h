@@ -13,6 +13,12 @@ namespace flexarm {
 
 /// Returns the effort on the twist. `twist`: its change over the step.
 PassiveEffort elastic_effort(const Elasticity& elasticity, const CoordinateStep& twist);
+/// The effort on a twist at an instant [N m or N], and the power that the damper dissipates [W].
+struct ElasticInstant {
+  double effort, dissipated;
+};
+/// Returns the effort at an instant. `rate`: of the twist [rad/s or m/s].
+ElasticInstant elastic_instant(const Elasticity& elasticity, double twist, double rate);
 /// Returns the elastic energy [J].
 double elastic_energy(const Elasticity& elasticity, double twist);
 /// Returns the damping coefficient at rest at this twist: minus the derivative of the effort with respect to the

@@ -343,8 +343,9 @@ TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
   const auto expect_no = [&](const std::string& what, const std::string& text) {
     EXPECT_NE(text.find(refused + what), std::string::npos) << text;
   };
-  expect_no("rotors with a motion of their own",
-            refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" stiffness="900"/>)"));
+  EXPECT_EQ(refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" stiffness="900"/>)"), "accepted");
+  expect_no("losses of rigid gears",
+            refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" efficiency="0.9"/>)"));
   expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
   expect_no("springs, lines, drag or contacts",
             refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"

@@ -174,6 +174,21 @@ TEST_P(ExplicitServos, ObeyCommands) {
   EXPECT_NEAR(s.velocity(0), v + 0.1 * 3 / kBlockMass, 1e-10);
 }
 
+// A new law begins with the effort that the motor gave, by its integral. That changes by h (kp v + kd a) in a step.
+TEST_P(ExplicitServos, SwitchTheirLawWithoutAJump) {
+  const double kp = 50, kd = 6, step = 1e-4;
+  SceneBuilder scene = block_on_rail();
+  scene::ServoDescription& servo = servo_on(scene, ServoMode::Velocity, kd, 0, kp);
+  servo.set_point = TimeFunction(0.8);
+  servo.other_modes.push_back({ServoMode::Position, kp, kd, 30});
+  Simulation s(scene.scene, options(GetParam().name, step, 1e-12));
+  run(s, 1000);
+  const double before = s.effort(0), change = step * (kp * s.velocity(0) + kd * before / kBlockMass);
+  s.switch_mode(0, ServoMode::Position);
+  run(s, 1);
+  EXPECT_NEAR(s.effort(0), before - change, 0.1 * change);
+}
+
 TEST_P(ExplicitServos, GoOnFromARestoredStateBitByBit) {
   for (const double sample_time : {0.0, 0.02}) {
     SceneBuilder scene = block_on_rail();

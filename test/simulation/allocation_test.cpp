@@ -242,6 +242,11 @@ TEST_F(Allocation, NoneInExplicitSteps) {
     b.body("fore", 0.7, {0, 0.4, 0}, inertia);
     b.joint("shoulder", scene::JointKind::Continuous, "world", "upper");
     b.joint("ball", scene::JointKind::Spherical, "upper", "fore", {1, 0, 0});
+    b.body("tool", 0.2, Vector3::Zero(), inertia);
+    b.joint("wrist", scene::JointKind::Continuous, "fore", "tool");
+    b.scene.motions.push_back({"wrist", TimeFunction(0.3), {}});  // it is held
+    b.drive("shoulder", 1, 0.01).stiffness = 20;
+    b.sensor("base", scene::SensorKind::Reaction, "upper");
     if (depends) {
       b.body("wheel", 0.3, Vector3::Zero(), inertia);
       b.body("follower", 0.3, Vector3::Zero(), inertia);
@@ -264,7 +269,10 @@ TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
     SimulationOptions options;
     options.scheme = scheme;
     options.step = 0.002;
-    Simulation simulation(free_ring(scene::JointKind::Universal).scene, options);
+    SceneBuilder ring = free_ring(scene::JointKind::Universal);
+    ring.sensor("closed", scene::SensorKind::Reaction, ring.scene.loop_joints.front().child);
+    ring.scene.sensors.back().joint = ring.scene.loop_joints.front().name;
+    Simulation simulation(ring.scene, options);
     expect_none_after_the_first_step(simulation, 200, [](const StepResult&) {});
   }
 }
