@@ -38,7 +38,7 @@ class ArticulatedBodies {
   /// Computes the efforts that these accelerations need. To be called before find_mass_matrix().
   void find_needed_efforts(const double* rates_change, const double* armatures, double* efforts);
   /// After find_needed_efforts(): {force, moment about the slave} that a joint transmits to its slave, world axes.
-  const Vector6& transmitted(int joint) const { return forces_[links_[joint].slave]; }
+  Vector6 transmitted(int joint) const { return forces_[links_[joint].slave].vector(); }
   /// Computes the mass matrix of the rates, by composite bodies (Featherstone 2008, ch. 6). set() is needed after it.
   void find_mass_matrix(const double* armatures, Eigen::MatrixXd& mass);
   /// Adds the power of a force {f, m} on a node per unit of each rate to `row`; world axes. `node`: -1 is the world.
