@@ -34,7 +34,7 @@ constexpr double kTriesToKnow = 3;
 std::vector<const Scheme*> other_schemes(const Simulation& simulation) {
   std::vector<const Scheme*> found;
   if (simulation.scene().integrator.scheme != "auto" || simulation.scheme() != kDefault) return found;
-  if (!explicit_obstacle(model_of(simulation)))
+  if (explicit_errors_are_known(model_of(simulation)))
     for (const Scheme& scheme : explicit_schemes()) found.push_back(&scheme);
   found.push_back(meanings(kHigherOrder).front());
   return found;

@@ -54,7 +54,7 @@ double tolerance_for(double accuracy) {
 
 bool suits_explicit_schemes(const scene::SceneDescription& scene) {
   try {
-    return explicit_obstacle(model_of(Simulation(scene))) == nullptr;
+    return explicit_errors_are_known(model_of(Simulation(scene)));
   } catch (const ModelError&) {
     return false;
   }

@@ -1,5 +1,7 @@
 #include "integrators/explicit_obstacle.h"
 
+#include <algorithm>
+
 namespace flexarm {
 
 const char* explicit_obstacle(const Model& model) {
@@ -22,6 +24,13 @@ const char* explicit_obstacle(const Model& model) {
     if (drive.gear && drive.sticks && drive.friction + drive.loss > 0) return "dry friction";
   }
   return nullptr;
+}
+
+bool explicit_errors_are_known(const Model& model) {
+  const auto has_play = [](const Actuator& actuator) {
+    return actuator.drive.gear && actuator.drive.gear->backlash > 0;
+  };
+  return !explicit_obstacle(model) && std::none_of(model.actuators.begin(), model.actuators.end(), has_play);
 }
 
 }  // namespace flexarm
