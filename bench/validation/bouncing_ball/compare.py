@@ -44,6 +44,15 @@ def uncertainty(row, key):
     return math.hypot(FRAME, 2 * FIRST * row[key] / row["second_s"])
 
 
+def fit_errors(rows):
+    """Independent errors of the times of some trials: a frame each, and that of each trial's first interval [s]."""
+    shared = numpy.zeros((len(rows), len(NUMBERS), len(rows)))
+    for i, row in enumerate(rows):
+        shared[i, :, i] = [2 * FIRST * row[key] / row["second_s"] for key in NUMBERS]
+    shared = shared.reshape(-1, len(rows))
+    return numpy.hstack([FRAME * numpy.eye(len(shared)), shared])
+
+
 def compare(case):
     rows = case.table("numbers.csv")
     used = [row for row in rows if row["trial"] in FITTED]
@@ -52,8 +61,8 @@ def compare(case):
         found = [bounces(case, restitution, row["second_s"]) for row in used]
         return [each[number - 2] for each in found for number in NUMBERS.values()]
 
-    restitution, errors = fit_numbers(predicted, [0.95, 0.87], [row[key] for row in used for key in NUMBERS],
-                                      [uncertainty(row, key) for row in used for key in NUMBERS])
+    estimate = fit_numbers(predicted, [0.95, 0.87], [row[key] for row in used for key in NUMBERS], fit_errors(used))
+    restitution, errors = estimate.values, estimate.standard_errors
     source = "trials %d, %d and %d" % FITTED
     case.identify("restitution of slow hits", restitution[0], "", source, errors[0])
     case.identify("restitution at %g m/s" % FAST, restitution[1], "", source, errors[1])
@@ -63,18 +72,20 @@ def compare(case):
               "twelve hits that last ten steps each")
     found = {}
     for row in rows:
-        found[row["trial"]] = times = bounces(case, restitution, row["second_s"])
+        times, parts = estimate.predict(lambda x: bounces(case, x, row["second_s"])[:12])
+        found[row["trial"]] = times
         for key, number in NUMBERS.items():
             yield Row("trial %d: bounce %d" % (row["trial"], number), row[key], times[number - 2],
-                      uncertainty(row, key), "s", note="a frame; twice the spread of the first interval",
-                      is_fitted=row["trial"] in FITTED, group="time of bounce %d" % number)
+                      uncertainty(row, key), "s", note="own: a frame, twice the spread of the first interval",
+                      is_fitted=row["trial"] in FITTED, group="time of bounce %d" % number,
+                      propagated=parts[number - 2])
     case.draw(lambda axes: draw(axes, rows, found))
 
 
 def draw(axes, rows, found):
     for row in rows:
         times = found[row["trial"]]
-        line, = axes.plot(numpy.arange(2, 14), times[:12], linewidth=0.8)
+        line, = axes.plot(numpy.arange(2, 14), times, linewidth=0.8)
         axes.plot([2, 4, 7, 13], [row["second_s"], *(row[key] for key in NUMBERS)], "o", mfc="none",
                   color=line.get_color(), label="trial %d" % row["trial"])
     axes.set(xlabel="number of the bounce", ylabel="time since the first one [s]", title="lines: flexarm")

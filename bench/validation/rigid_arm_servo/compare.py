@@ -5,18 +5,20 @@ import numpy
 from flexarm import Simulation
 from flexarm.validation import Row
 from flexarm.validation.fits import fit_run
+from flexarm.validation.uncertainty import from_trials
 
-FITTED = "rigidarm_K1_9", 1  # the step from which numbers are identified
-# The two steps of a record, there and back, differ by 0.03 rad (one by 0.05) in the size of the last angle, where
-# friction holds the arm, and by up to 34 ms in time.
-ANGLE, TIME = 0.03, 0.034  # rad; s
+FITTED = "rigidarm_K1_9", "rigidarm_k1k3_9"  # the records from whose steps numbers are identified
+# Of a reading: digits of the table, and the time between rows of the record. How steps differ is in the scatter of what
+# is identified from each of them.
+ANGLE, TIME = 0.001, 0.001  # rad; s
+NAMES = "inertia", "dry", "delay"
 DELAYS = 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05  # that are tried [s]
 HUB = "joint/hub/position"
 
 
 def respond(case, row, values, until=1.6):
     """Times [s] and angles [rad] after the change of the reference."""
-    simulation = Simulation(case.scene("arm.urdf", {**known(row), **values}))
+    simulation = Simulation(case.scene("arm.urdf", {**known(row), **dict(zip(NAMES, values))}))
     rows = simulation.run(round(until / simulation.step_size), record=[HUB])
     return rows.T
 
@@ -43,37 +45,36 @@ def known(row):
 
 
 def identify(case, row):
-    """Inertia, friction and delay, from one step; the delay is in whole milliseconds, so that several are tried."""
+    """Inertia, friction and delay of one step; the delay is in whole milliseconds, so that several are tried."""
     times, angles = recorded(case, row, 0.8)
     tries = []
     for delay in DELAYS:
-        values, errors = fit_run(case.path("arm.urdf"), {"inertia": 0.0035, "dry": 0.05}, times[::5],
-                                 {HUB: angles[::5]}, {**known(row), "delay": delay})
-        values["delay"] = delay
+        estimate = fit_run(case.path("arm.urdf"), {"inertia": 0.0035, "dry": 0.05}, times[::5], {HUB: angles[::5]},
+                           {**known(row), "delay": delay})
+        values = [*estimate.values, delay]
         found = numpy.interp(times, *respond(case, row, values, 0.8))
-        tries.append((((found - angles) ** 2).sum(), values, errors))
-    _, values, errors = min(tries, key=lambda each: each[0])
-    name = "%s, step %d" % FITTED
-    case.identify("inertia (published: 0.0035)", values["inertia"], "kg m^2", name, errors["inertia"])
-    case.identify("dry friction", values["dry"], "N m", name, errors["dry"])
-    case.identify("delay of the loop", 1e3 * values["delay"], "ms", name)
-    return values
+        tries.append((((found - angles) ** 2).sum(), values))
+    return min(tries)[1]
 
 
 def compare(case):
     rows = case.table("numbers.csv")
-    values = identify(case, next(row for row in rows if (row["record"], row["step"]) == FITTED))
+    trials = [identify(case, row) for row in rows if row["record"] in FITTED]
+    estimate = from_trials(trials)
+    for label, factor, unit, value, error, values in zip(
+            ("inertia (published: 0.0035)", "dry friction", "delay of the loop"), (1, 1, 1e3),
+            ("kg m^2", "N m", "ms"), estimate.values, estimate.standard_errors, zip(*trials)):
+        each = ", ".join("%.4g" % (factor * one) for one in values)
+        case.identify(label, factor * value, unit, "the steps of K1_9 and k1k3_9: %s; for one more step" % each,
+                      factor * error)
     for row in rows:
-        name = "%s, step %d: " % (row["record"][9:], row["step"])
-        is_fitted = (row["record"], row["step"]) == FITTED
-        extremum, half, end = metrics(*respond(case, row, values), row)
-        yield Row(name + "largest angle", row["extremum_rad"], extremum, ANGLE, "rad",
-                  note="steps of a record differ by this", is_fitted=is_fitted, group="largest angle")
-        yield Row(name + "time to half", row["half_s"], half, TIME, "s", note="steps of a record differ by this",
-                  is_fitted=is_fitted, group="time")
-        yield Row(name + "angle after 1.6 s", row["end_rad"], end, ANGLE, "rad", note="friction holds the arm",
-                  is_fitted=is_fitted, group="last angle")
-    case.draw(lambda axes: draw(case, axes, rows, values), columns=4, rows=2, width=3.2, height=2.5)
+        found, parts = estimate.predict(lambda x: metrics(*respond(case, row, x), row))
+        for label, key, value, own, unit, part, group in zip(
+                ("largest angle", "time to half", "angle after 1.6 s"), ("extremum_rad", "half_s", "end_rad"), found,
+                (ANGLE, TIME, ANGLE), ("rad", "s", "rad"), parts, ("largest angle", "time", "last angle")):
+            yield Row("%s, step %d: %s" % (row["record"][9:], row["step"], label), row[key], value, own, unit,
+                      note="own: reading", is_fitted=row["record"] in FITTED, group=group, propagated=part)
+    case.draw(lambda axes: draw(case, axes, rows, estimate.values), columns=4, rows=2, width=3.2, height=2.5)
 
 
 def draw(case, axes, rows, values):

@@ -71,13 +71,26 @@ def identify(case, strip, log):
     still = strip.run(0.002)[1][0]  # the strip's weight
     used = (log.times > log.rest + SETTLED)
     force = numpy.where(used, log.force - log.force[used].mean() + still, numpy.nan)[::10]
-    values, errors = fit_run(strip.path, {"young": 190e9, "ratio": 0.005, "drag": 5.0}, log.times[::10],
-                             {"sensor/root/fz": force}, {"pitch": strip.pitch}, step=0.002)
-    source = "the %s log with %g cm" % FITTED
-    case.identify("Young's modulus", values["young"] / 1e9, "GPa", source, errors["young"] / 1e9)
-    case.identify("damping ratio", values["ratio"], "", source, errors["ratio"])
-    case.identify("drag coefficient", values["drag"], "", source, errors["drag"])
-    return values
+    estimate = fit_run(strip.path, {"young": 190e9, "ratio": 0.005, "drag": 5.0}, log.times[::10],
+                       {"sensor/root/fz": force}, {"pitch": strip.pitch}, step=0.002)
+    for name, unit, factor, value, error in zip(("Young's modulus", "damping ratio", "drag coefficient"),
+                                                ("GPa", "", ""), (1e-9, 1, 1), estimate.values,
+                                                estimate.standard_errors):
+        case.identify(name, factor * value, unit, "the %s log with %g cm" % FITTED, factor * error)
+    return estimate
+
+
+def predict(case, strip, log, estimate):
+    """Late frequency, early and late amplitude, and their uncertainties; times and force of the run."""
+    curves = []  # of the values themselves, then of their neighbours
+
+    def numbers(x):
+        values = dict(zip(estimate.names, x))
+        curves.append(strip.run(log.times[-1], **values))
+        return [frequency_at_rest(case, strip.pitch, young=values["young"]),
+                *(sine(*curves[-1], window)[1] for window in (EARLY, LATE))]
+
+    return (*estimate.predict(numbers), *curves[0])
 
 
 def compare(case):
@@ -88,23 +101,22 @@ def compare(case):
                   frequency_at_rest(case, PITCH[row["orientation"]]), NOMINAL * row["frequency_hz"], "Hz",
                   note="4 %: Young's modulus, 0.02 mm of thickness", group="frequency")
     curves = {}
-    found = None
+    estimate = None
     for row in table:
         name, pitch = "%s, %g cm" % (row["orientation"], row["move_cm"]), PITCH[row["orientation"]]
         log = Log(case.record(row["log"]), int(row["joint"]))
         strip = Strip(case, log, pitch)
         is_first = (row["orientation"], row["move_cm"]) == FITTED
-        found = identify(case, strip, log) if is_first else found
-        times, force = strip.run(log.times[-1], **found)
+        estimate = identify(case, strip, log) if is_first else estimate
+        found, parts, times, force = predict(case, strip, log, estimate)
         curves[name] = log, times, force
         late = sine(log.times, log.force, LATE)
-        yield Row(name + ": frequency from %g s on" % LATE[0], late[0],
-                  frequency_at_rest(case, pitch, young=found["young"]), WANDER, "Hz", note="robot's joints give",
-                  is_fitted=is_first, group="frequency")
-        for window, amplitude in ((EARLY, sine(log.times, log.force, EARLY)[1]), (LATE, late[1])):
-            yield Row(name + ": force amplitude, %g to %g s" % window, amplitude, sine(times, force, window)[1],
-                      FORCE * amplitude + FRICTION, "N", note="repeats, friction of the joint",
-                      is_fitted=is_first, group="force amplitude")
+        yield Row(name + ": frequency from %g s on" % LATE[0], late[0], found[0], WANDER, "Hz",
+                  note="own: robot's joints give", is_fitted=is_first, group="frequency", propagated=parts[0])
+        for i, window, amplitude in ((1, EARLY, sine(log.times, log.force, EARLY)[1]), (2, LATE, late[1])):
+            yield Row(name + ": force amplitude, %g to %g s" % window, amplitude, found[i],
+                      math.hypot(FORCE * amplitude, FRICTION), "N", note="own: repeats, friction of the joint",
+                      is_fitted=is_first, group="force amplitude", propagated=parts[i])
     case.draw(lambda axes: draw(axes, curves), columns=3, rows=3, width=4, height=2.5)
 
 

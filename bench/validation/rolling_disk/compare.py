@@ -37,19 +37,21 @@ def uncertainty(row):
 def compare(case):
     rows = case.table("numbers.csv")
     used = [row for row in rows if row["record"] == FITTED]
-    (rolling,), (error,) = fit_numbers(lambda x: [duration(case, row, x[0]) for row in used], [0.007],
-                                        [row["time_s"] for row in used], [uncertainty(row) for row in used])
+    estimate = fit_numbers(lambda x: [duration(case, row, x[0]) for row in used], [0.007],
+                           [row["time_s"] for row in used], [uncertainty(row) for row in used])
+    (rolling,), (error,) = estimate.values, estimate.standard_errors
+    found, parts = estimate.predict(lambda x: [duration(case, row, x[0]) for row in rows])
     case.identify("lever arm of rolling friction", 1e3 * rolling, "mm", "the times of %s" % FITTED, 1e3 * error)
-    for row in rows:
-        yield Row("%s: %g to %g rad" % (row["record"], row["first_rad"], row["second_rad"]), row["time_s"],
-                  duration(case, row, rolling), uncertainty(row), "s", note="repeats, 0.1 deg of the ramp",
-                  is_fitted=row["record"] == FITTED, group=row["record"].rstrip("_12"))
+    for row, value, part in zip(rows, found, parts):
+        yield Row("%s: %g to %g rad" % (row["record"], row["first_rad"], row["second_rad"]), row["time_s"], value,
+                  uncertainty(row), "s", note="own: repeats, 0.1 deg of the ramp",
+                  is_fitted=row["record"] == FITTED, group=row["record"].rstrip("_12"), propagated=part)
     case.draw(lambda axes: draw(case, axes, rolling), columns=2)
     record = read(case, FITTED)
-    values, errors = fit_run(case.path("disk.urdf"), {"rolling": 0.007, "rate": 1.0}, record[0] - record[0][0],
-                             {ANGLE: record[1]}, {"angle": record[1][0]}, step=0.005)
-    case.identify("lever arm of rolling friction, by `flexarm identify`'s search", 1e3 * values["rolling"], "mm",
-                  "all angles of %s" % FITTED, 1e3 * errors["rolling"])
+    search = fit_run(case.path("disk.urdf"), {"rolling": 0.007, "rate": 1.0}, record[0] - record[0][0],
+                     {ANGLE: record[1]}, {"angle": record[1][0]}, step=0.005)
+    case.identify("lever arm of rolling friction, by `flexarm identify`'s search", 1e3 * search.values[0], "mm",
+                  "all angles of %s" % FITTED, 1e3 * search.standard_errors[0])
 
 
 def read(case, name):

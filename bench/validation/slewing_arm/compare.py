@@ -16,6 +16,10 @@ HUB_DELAYS, GAUGE_DELAYS = (0.0, 0.01, 0.02), (0.06, 0.07, 0.08)  # that are tri
 GROUPS = {"t90_s": "hub", "hub_extremum_rad": "hub", "tip1_m": "first swing", "t1_s": "first swing",
           "tip2_m": "second swing", "t2_s": "second swing"}
 FIRST = {"bending": 0.25, "ratio": 0.02, "inertia": 0.002, "dry": 0.05}  # values of the search
+DELAYS = "hub_delay", "gauge_delay"  # names of two more numbers, which are no parameters of the scene
+TOLD = [("bending stiffness", "N m^2", 1), ("damping ratio of the arm", "", 1),
+        ("inertia of the hub (nominal: 0.002)", "kg m^2", 1), ("dry friction of unit 6", "N m", 1),
+        ("delay of the hub's angle", "ms", 1e3), ("delay of the gauge", "ms", 1e3)]
 HUB, GAUGE = "joint/hub/position", "sensor/gauge/strain"
 # The two steps of a rig differ by up to 10 % in the tip's deflection and 30 ms in its times; the gauge's scale is not
 # known.
@@ -55,16 +59,15 @@ class Arm:
                 for i, (delay, sign) in enumerate(zip(delays, (1, -1)), 1)]
 
     def fit(self, delays, unknowns, known):
-        """Values with those that are known, standard errors, and the sum of squares relative to the record's spread."""
+        """An Estimate of the unknowns, and the sum of squares relative to the record's spread."""
         step = self.step
         hub, tip = (numpy.interp(step.times + delay, step.times, column, right=numpy.nan)[::10]
                     for delay, column in zip(delays, (step.hub, step.tip)))
-        found, errors = fit_run(self.path, unknowns, step.times[::10], {HUB: hub, GAUGE: -tip},
-                                {**known, "start": step.start}, step=0.002)
-        values = {**known, **found}
-        curves = self.run(values, delays)
-        return values, errors, sum(((each - column) ** 2).mean() / column.var()
-                                   for each, column in zip(curves, (step.hub, step.tip)))
+        estimate = fit_run(self.path, unknowns, step.times[::10], {HUB: hub, GAUGE: -tip},
+                           {**known, "start": step.start}, step=0.002)
+        curves = self.run({**known, **estimate.named}, delays)
+        return estimate, sum(((each - column) ** 2).mean() / column.var()
+                             for each, column in zip(curves, (step.hub, step.tip)))
 
 
 def metrics(times, hub, tip, start, end):
@@ -81,46 +84,59 @@ def metrics(times, hub, tip, start, end):
 def identify(case, arm, name):
     """Values of the first rig, and the delays of its signals: those of the best of several searches. Tells them."""
     tries = {delays: arm.fit(delays, FIRST, {}) for delays in itertools.product(HUB_DELAYS, GAUGE_DELAYS)}
-    delays = min(tries, key=lambda each: tries[each][2])
-    values, errors, _ = tries[delays]
-    for key, label, unit in (("bending", "bending stiffness", "N m^2"), ("ratio", "damping ratio of the arm", ""),
-                             ("inertia", "inertia of the hub (nominal: 0.002)", "kg m^2"),
-                             ("dry", "dry friction of unit 6", "N m")):
-        case.identify(label, values[key], unit, name, errors[key])
-    case.identify("delay of the hub's angle", 1e3 * delays[0], "ms", name)
-    case.identify("delay of the gauge", 1e3 * delays[1], "ms", name)
-    return values, delays
+    delays = min(tries, key=lambda each: tries[each][1])
+    estimate = tries[delays][0].with_chosen(delays, [numpy.diff(each)[0] for each in (HUB_DELAYS, GAUGE_DELAYS)],
+                                            DELAYS)
+    for (label, unit, factor), value, error in zip(TOLD, estimate.values, estimate.standard_errors):
+        case.identify(label, factor * value, unit, name, factor * error)
+    return estimate
 
 
-def identify_friction(case, arm, name, values, delays):
+def identify_friction(case, arm, name, estimate):
     """Values of another rig of the same kind: only its friction is its own."""
-    known = {key: value for key, value in values.items() if key != "dry"}
-    found, errors, _ = arm.fit(delays, {"dry": values["dry"]}, known)
-    case.identify("dry friction of unit 7", found["dry"], "N m", name, errors["dry"])
-    return found
+    known = {key: value for key, value in estimate.named.items() if key not in ("dry", *DELAYS)}
+    own, _ = arm.fit([estimate.named[key] for key in DELAYS], {"dry": estimate.named["dry"]}, known)
+    (value,), (error,) = own.values, own.standard_errors
+    case.identify("dry friction of unit 7", value, "N m", name, error)
+    return estimate.with_other("dry", value, error)
+
+
+def predict(arm, estimate, row):
+    """The numbers of a row of the table and their uncertainties, and the curves of hub and tip."""
+    curves = []  # of the values themselves, then of their neighbours
+
+    def numbers(x):
+        values = dict(zip(estimate.names, x))
+        curves.append(arm.run(values, [values.pop(name) for name in DELAYS]))
+        found = metrics(arm.step.times, *curves[-1], row["from_rad"], row["to_rad"])
+        return [found[key] for key in GROUPS]
+
+    # Short differences, since the inertia is hardly known.
+    found, parts = estimate.predict(numbers, 0.2)
+    return dict(zip(GROUPS, found)), dict(zip(GROUPS, parts)), curves[0]
 
 
 def compare(case):
-    curves, values, delays = [], None, None
+    curves, estimate = [], None
     for row in case.table("numbers.csv"):
         step = Step(case.record(row["record"]), int(row["step"]), row["sign"])
         arm = Arm(case, step)
         name = "%s, step %d" % ("unit 6" if "Unit6" in row["record"] else "unit 7", row["step"])
         is_fitted = row["step"] == 1
-        if values is None:
-            values, delays = identify(case, arm, name)
+        if estimate is None:
+            estimate = identify(case, arm, name)
         elif is_fitted:
-            values = identify_friction(case, arm, name, values, delays)
-        hub, tip = arm.run(values, delays)
-        curves.append((name, step, hub, tip))
-        found = metrics(step.times, hub, tip, row["from_rad"], row["to_rad"])
+            estimate = identify_friction(case, arm, name, estimate)
+        found, parts, curve = predict(arm, estimate, row)
+        curves.append((name, step, *curve))
         hub_range = OVERSHOOT * abs(row["to_rad"] - row["from_rad"])
         for key, label, unit, uncertainty in (
                 ("t90_s", "time to 90 %", "s", TIME), ("hub_extremum_rad", "extremum of the hub", "rad", hub_range),
                 ("tip1_m", "first extremum of the tip", "m", None), ("t1_s", "its time", "s", TIME),
                 ("tip2_m", "second extremum of the tip", "m", None), ("t2_s", "its time", "s", TIME)):
             yield Row("%s: %s" % (name, label), row[key], found[key], uncertainty or DEFLECTION * abs(row[key]), unit,
-                      note="steps of a rig differ by this", is_fitted=is_fitted, group=GROUPS[key])
+                      note="own: steps of a rig differ by this", is_fitted=is_fitted, group=GROUPS[key],
+                      propagated=parts[key])
     case.draw(lambda axes: draw(axes, curves), columns=4, rows=2, width=3.2, height=2.5)
 
 

@@ -26,12 +26,12 @@ def frequencies(case, thickness_mm):
 def compare(case):
     rows = case.table("numbers.csv")
     measured = [(row["first_hz"] + row["second_hz"]) / 2 for row in rows]
-    (thickness,), (error,) = fit_numbers(lambda x: frequencies(case, x[0])[:1], [PUBLISHED], measured[:1],
-                                         [RELATIVE * measured[0]])
+    estimate = fit_numbers(lambda x: frequencies(case, x[0])[:1], [PUBLISHED], measured[:1], [RELATIVE * measured[0]])
+    (thickness,), (error,) = estimate.values, estimate.standard_errors
     case.identify("thickness (published: %g)" % PUBLISHED, thickness, "mm", "the first frequency", error)
-    for row, value, found in zip(rows, measured, frequencies(case, thickness)):
-        yield Row("bending %d" % row["mode"], value, found, RELATIVE * value, "Hz",
-                  note="1.5 %: place of the accelerometer, clamp", group="frequencies", is_fitted=row["mode"] == 1)
+    for row, value, found, part in zip(rows, measured, *estimate.predict(lambda x: frequencies(case, x[0]))):
+        yield Row("bending %d" % row["mode"], value, found, RELATIVE * value, "Hz", group="frequencies",
+                  note="own: 1.5 %, place of the accelerometer, clamp", is_fitted=row["mode"] == 1, propagated=part)
     case.draw(lambda axes: draw(axes, measured, frequencies(case, thickness), frequencies(case, PUBLISHED)))
 
 

@@ -45,15 +45,16 @@ def compare(case):
         yield Row("authors' model, pull %g mm" % pull, model, height(case, pull, points=45), MODEL, "mm", "calculated",
                   "continuous tendon")
     used = [row for row in rows if row["pull_mm"] == FITTED]
-    (slack,), (error,) = fit_numbers(lambda x: [height(case, FITTED, x[0])] * len(used), [1.0],
-                                     [row["measured_mm"] for row in used], [READING] * len(used))
+    estimate = fit_numbers(lambda x: [height(case, FITTED, x[0])] * len(used), [1.0],
+                           [row["measured_mm"] for row in used], [READING] * len(used))
+    (slack,), (error,) = estimate.values, estimate.standard_errors
     case.identify("slack of the tendon", slack, "mm", "the three readings with %g mm" % FITTED, error)
     for row in rows:
-        found = height(case, row["pull_mm"], slack)
+        (found,), (part,) = estimate.predict(lambda x: [height(case, row["pull_mm"], x[0])])
         other = height(case, row["pull_mm"], slack, DISTANCE * (1 + RADIUS))
         yield Row("tendon %g, pull %g mm" % (row["tendon"], row["pull_mm"]), row["measured_mm"], found,
-                  math.hypot(READING, other - found), "mm", note="reading, 5 % of the discs' radius", group="height",
-                  is_fitted=row["pull_mm"] == FITTED)
+                  math.hypot(READING, other - found), "mm", note="own: reading, 5 % of the discs' radius",
+                  group="height", is_fitted=row["pull_mm"] == FITTED, propagated=part)
     case.draw(lambda axes: draw(case, axes, rows, slack))
 
 

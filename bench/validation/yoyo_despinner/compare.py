@@ -9,6 +9,7 @@ from flexarm.validation import MissingRecord, Row
 from flexarm.validation.fits import fit_numbers
 
 INCH, RPM = 0.0254, math.pi / 30
+PUBLISHED = 0.0483  # inertia of the drum [kg m^2]
 FITTED = 12  # length of the cord from which the inertia is identified [in]
 CORD, SPEED = 0.125, 1.0  # of the length of a cord, with its knots [in]; of the speed before, and of the sensor [rpm]
 RECORD = ["joint/spin/velocity", "probe/mass/x", "probe/mass/y"]
@@ -35,6 +36,13 @@ def ideal(case, cord_in, before_rpm):
     return before_rpm * (-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)
 
 
+def own(case, row, inertia):
+    """Uncertainty of a speed after, with that of the cord and of the speed before [rpm]."""
+    speed, shorter = (unwind(case, cord, row["before_rpm"], inertia=inertia)[1][-1]
+                      for cord in (row["cord_in"], row["cord_in"] - CORD))
+    return math.hypot(shorter - speed, math.hypot(SPEED, SPEED * speed / row["before_rpm"]))
+
+
 def compare(case):
     rows = case.table("numbers.csv")
     for cord in (8, 12):
@@ -42,18 +50,18 @@ def compare(case):
         yield Row("cord %g in, closed form" % cord, expected, unwind(case, cord, 100)[1][-1], 0.1, "rpm", "closed form",
                   "0.1 rpm: cords stretch and are fixed just outside the rim")
     used = next(row for row in rows if row["cord_in"] == FITTED)
-    (inertia,), (error,) = fit_numbers(lambda x: [unwind(case, FITTED, used["before_rpm"], inertia=x[0])[1][-1]],
-                                       [0.0483], [used["after_rpm"]], [SPEED])
-    case.identify("inertia of the drum (published: 0.0483, without its latches)", inertia, "kg m^2",
+    estimate = fit_numbers(lambda x: [unwind(case, FITTED, used["before_rpm"], inertia=x[0])[1][-1]], [PUBLISHED],
+                           [used["after_rpm"]], [own(case, used, PUBLISHED)])
+    (inertia,), (error,) = estimate.values, estimate.standard_errors
+    case.identify("inertia of the drum (published: %g, without its latches)" % PUBLISHED, inertia, "kg m^2",
                   "the speed after %g in" % FITTED, error)
     curves = {}
     for row in rows:
         times, speeds = curves[row["cord_in"]] = unwind(case, row["cord_in"], row["before_rpm"], inertia=inertia)
-        shorter = unwind(case, row["cord_in"] - CORD, row["before_rpm"], inertia=inertia)[1][-1]
-        uncertainty = math.hypot(shorter - speeds[-1], math.hypot(SPEED, SPEED * speeds[-1] / row["before_rpm"]))
-        yield Row("cord %g in: speed after" % row["cord_in"], row["after_rpm"], abs(speeds[-1]), uncertainty, "rpm",
-                  note="1/8 in of the cord, 1 rpm of the speeds", is_fitted=row["cord_in"] == FITTED,
-                  group="speed after")
+        _, (part,) = estimate.predict(lambda x: unwind(case, row["cord_in"], row["before_rpm"], inertia=x[0])[1][-1:])
+        yield Row("cord %g in: speed after" % row["cord_in"], row["after_rpm"], abs(speeds[-1]),
+                  own(case, row, inertia), "rpm", note="own: 1/8 in of the cord, 1 rpm of the speeds",
+                  is_fitted=row["cord_in"] == FITTED, group="speed after", propagated=part)
     case.draw(lambda axes: draw(case, axes, rows, curves), columns=2)
 
 

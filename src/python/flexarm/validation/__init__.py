@@ -5,5 +5,6 @@ bench/validation/README.md
 
 from .case import Case, MissingRecord
 from .rows import Identified, Row
+from .uncertainty import Estimate
 
-__all__ = ["Case", "Identified", "MissingRecord", "Row"]
+__all__ = ["Case", "Estimate", "Identified", "MissingRecord", "Row"]

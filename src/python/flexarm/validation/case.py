@@ -60,9 +60,9 @@ class Case:
         """The scene of a file of the folder, with other values of its parameters; options: those of read_scene()."""
         return read_scene(self.path(name), parameters or {}, **options)
 
-    def identify(self, name, value, unit, source, standard_error=float("nan")):
+    def identify(self, name, value, unit, source, standard_error=float("nan"), birge=1.0):
         """Tells of a number that was identified, and from what; see Identified."""
-        self.identified.append(Identified(name, value, unit, source, standard_error))
+        self.identified.append(Identified(name, value, unit, source, standard_error, birge))
 
     def draw(self, function, columns=1, rows=1, width=4.5, height=3.4):
         """Writes the picture: function(axes) draws into matplotlib's axes, one, or `rows * columns` of them.

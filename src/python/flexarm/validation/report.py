@@ -6,6 +6,7 @@ import os
 from .case import TEXT
 from .rows import FITTED, MEASURED, WITHIN, count
 
+MISSED = 0.05  # share of results that are outside of an uncertainty of 95 %
 REPOSITORY = "../../bench/validation"  # seen from docs/validation
 
 
@@ -45,6 +46,7 @@ def cells(row):
 
 
 HEADER = ["quantity", "published", "flexarm", "error", "uncertainty", "unit", "kind", "verdict"]
+PARTS = ["own part", "identified part"]  # of the uncertainty
 
 
 def terminal_table(outcomes):
@@ -56,6 +58,32 @@ def terminal_table(outcomes):
         text += rest[:len(outcome.rows)]
         rest = rest[len(outcome.rows):]
     return "\n".join(text)
+
+
+def by_chance(rows):
+    """How many predictions are outside, and how many would be if uncertainties of 95 % were all there is; or ""."""
+    within, all_of_them = count(rows)
+    if not all_of_them:
+        return ""
+    return "%d of %d, by chance %.1f, at most %d" % (all_of_them - within, all_of_them, MISSED * all_of_them,
+                                                     most(all_of_them, MISSED))
+
+
+def is_by_chance(rows):
+    """Whether there are predictions, and not more outside than may be by chance."""
+    within, all_of_them = count(rows)
+    return all_of_them > 0 and all_of_them - within <= most(all_of_them, MISSED)
+
+
+def most(trials, chance):
+    """The least number of successes that is not exceeded with a probability of 95 % (binomial distribution)."""
+    successes, total = 0, (1 - chance) ** trials
+    term = total
+    while total < 0.95:
+        term *= (trials - successes) / (successes + 1) * chance / (1 - chance)
+        successes += 1
+        total += term
+    return successes
 
 
 def whole(lists):
@@ -70,7 +98,11 @@ def summary(outcomes):
     text = "%d of %d predictions are within the uncertainty; %d of %d cases are with all of theirs" % (
         sum(within for within, _ in counts), sum(each for _, each in counts), whole(run), len(run))
     measured = [[row for row in rows if row.kind == MEASURED] for rows in run]
-    return text + (", %d with all measured ones" % whole(measured) if any(measured) else "")
+    if not any(measured):
+        return text
+    return text + ", %d with all measured ones. Measured ones outside: %s; in %d of %d cases not more than that" % (
+        whole(measured), by_chance([row for rows in measured for row in rows]),
+        sum(is_by_chance(rows) for rows in measured), sum(count(rows)[1] > 0 for rows in measured))
 
 
 def markdown_row(texts):
@@ -78,10 +110,15 @@ def markdown_row(texts):
 
 
 def markdown_table(rows):
-    lines = [markdown_row(HEADER + ["note"]), "|---|" + "--:|" * 4 + "---|" * 4]
+    """The table of a page. If numbers were identified, both parts of the uncertainty stand beside it."""
+    parts = PARTS if any(row.propagated for row in rows) else []
+    lines = [markdown_row(HEADER[:5] + parts + HEADER[5:] + ["note"]),
+             "|---|" + "--:|" * (4 + len(parts)) + "---|" * 4]
     for row in rows:
+        texts = cells(row)
         verdict = row.verdict if row.verdict in (WITHIN, FITTED) else "**%s**" % row.verdict
-        lines.append(markdown_row(cells(row)[:-1] + [verdict, row.note]))
+        sizes = ["%.2g" % size for size in (row.own, row.propagated)][:len(parts)]
+        lines.append(markdown_row(texts[:5] + sizes + texts[5:-1] + [verdict, row.note]))
     return "\n".join(lines)
 
 
@@ -91,8 +128,9 @@ def identified_text(numbers):
     for each in numbers:
         error = "" if math.isnan(each.standard_error) else " ± %s" % number(each.standard_error)
         value = " ".join(part for part in (number(each.value) + error, each.unit) if part)
-        lines.append("- %s: %s, from %s" % (each.name, value, each.source))
-    return "Identified:\n\n" + "\n".join(lines) + "\n\n" if lines else ""
+        scatter = "" if each.birge <= 1 else ", which scatter by %.2g of their uncertainties" % each.birge
+        lines.append("- %s: %s, from %s%s" % (each.name, value, each.source, scatter))
+    return "Identified (± standard error):\n\n" + "\n".join(lines) + "\n\n" if lines else ""
 
 
 def page(outcome):
@@ -114,9 +152,16 @@ INDEX_TEXT = """# Beside measurements
 
 flexarm beside numbers that others have published: measured ones, and such that other programs or closed forms give.
 Each case has its own page, with what agrees, what does not, and why. `flexarm bench validation` computes all of it
-anew. A row is *within* if the difference between flexarm and the published number is not larger than the uncertainty,
-which is that of the measurement and of what the scene is made of. Rows that were used to identify a number are
-*fitted*, and do not count.
+anew. A row is *within* if the difference between flexarm and the published number is not larger than the uncertainty.
+Rows that were used to identify a number are *fitted*, and do not count.
+
+Uncertainties are expanded ones, about 95 % (k = 2). They have two parts, whose squares add up: the row's own one, of
+the measurement and of what the scene is made of, and that of the identified numbers, propagated to the predicted row
+(ASME V&V 20, GUM). [How it is done](../../bench/validation/README.md#uncertainty).
+
+The first count is the strict one. Beside it: how many measured rows are outside, how many would be by chance if the
+uncertainties of 95 % were all there is (5 % of them in the mean; at most so many in 95 of 100 cases, by the binomial
+distribution). Rows of a case are not independent, so that this is only a rule of thumb.
 
 Recorded files of others are not part of the repository: `--data FOLDER` names the folder that has them. The pages
 say where they are from.
@@ -144,7 +189,7 @@ def index_row(outcome):
     within, whole = count(others)
     return markdown_row(["[%s](%s.md)" % (outcome.title, outcome.name), text,
                          "%d of %d" % (within, whole) if whole else "", "%.2g" % max(ratios) if ratios else "",
-                         ", ".join(each.name for each in outcome.identified)])
+                         by_chance(measured), ", ".join(each.name for each in outcome.identified)])
 
 
 def index(outcomes):
@@ -156,7 +201,8 @@ def index(outcomes):
         if not chosen:
             continue
         lines = [markdown_row(["case", "measured, within", "calculated or closed form, within",
-                               "largest error / uncertainty", "identified"]), "|---|---|--:|--:|---|"]
+                               "largest error / uncertainty", "measured, outside", "identified"]),
+                 "|---|---|--:|--:|---|---|"]
         lines += [index_row(outcome) for outcome in chosen]
         parts.append("## %s\n\n%s\n\n%s.\n\n" % (title, "\n".join(lines), summary(chosen)))
         parts += ["[![%s](%s.png)](%s.md)\n\n" % (outcome.title, outcome.name, outcome.name)
