@@ -128,11 +128,11 @@ def test_batches_see_that_neighbours_depend_on_each_other():
     assert estimate.freedom == count - 1
 
 
-def test_chosen_and_other_numbers_join_an_estimate():
-    estimate = Estimate(numpy.array([1.0, 2.0]), numpy.array([[4.0, 1.0], [1.0, 9.0]]), 9, ("a", "b"))
-    joined = estimate.with_chosen([0.3], [0.12], ["c"]).with_other("b", 5.0, 0.5)
-    assert joined.named == {"a": 1.0, "b": 5.0, "c": 0.3} and joined.freedom == 9
-    assert joined.covariance == pytest.approx(numpy.diag([4.0, 0.25, 0.12 ** 2 / 12]))
+def test_chosen_numbers_join_an_estimate():
+    """A number from a grid is as good as one anywhere within its spacing: variance spacing^2/12."""
+    joined = Estimate(numpy.array([1.0]), numpy.array([[4.0]]), 9, ("a",)).with_chosen([0.3], [0.12], ["b"])
+    assert joined.named == {"a": 1.0, "b": 0.3} and joined.freedom == 9
+    assert joined.covariance == pytest.approx(numpy.diag([4.0, 0.12 ** 2 / 12]))
 
 
 def test_both_parts_of_the_uncertainty_add_in_quadrature():

@@ -3,6 +3,7 @@
 import itertools
 import os
 import shutil
+import sys
 import tempfile
 
 import numpy
@@ -11,31 +12,21 @@ from flexarm import Simulation, read_scene
 from flexarm.validation import Row
 from flexarm.validation.fits import fit_run
 
-BEFORE, AFTER = 0.1, 2.4  # the step of the reference; from the records [s]
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from records import Step, metrics  # noqa: E402
+
 HUB_DELAYS, GAUGE_DELAYS = (0.0, 0.01, 0.02), (0.06, 0.07, 0.08)  # that are tried [s]
 GROUPS = {"t90_s": "hub", "hub_extremum_rad": "hub", "tip1_m": "first swing", "t1_s": "first swing",
           "tip2_m": "second swing", "t2_s": "second swing"}
 FIRST = {"bending": 0.25, "ratio": 0.02, "inertia": 0.002, "dry": 0.05}  # values of the search
 DELAYS = "hub_delay", "gauge_delay"  # names of two more numbers, which are no parameters of the scene
-TOLD = [("bending stiffness", "N m^2", 1), ("damping ratio of the arm", "", 1),
-        ("inertia of the hub (nominal: 0.002)", "kg m^2", 1), ("dry friction of unit 6", "N m", 1),
+TOLD = [("bending stiffness", "N m^2", 1), ("damping ratio", "", 1),
+        ("inertia of the hub (nominal: 0.002)", "kg m^2", 1), ("dry friction", "N m", 1),
         ("delay of the hub's angle", "ms", 1e3), ("delay of the gauge", "ms", 1e3)]
 HUB, GAUGE = "joint/hub/position", "sensor/gauge/strain"
 # The two steps of a rig differ by up to 10 % in the tip's deflection and 30 ms in its times; the gauge's scale is not
 # known.
 DEFLECTION, TIME, OVERSHOOT = 0.10, 0.03, 0.05  # relative; s; of the step, which friction may leave
-
-
-class Step:
-    """A step of the reference in a record: times [s], voltage [V], hub's angle [rad] and tip's deflection [m]."""
-
-    def __init__(self, path, number, sign):
-        table = numpy.loadtxt(path, comments="%")
-        change = numpy.flatnonzero(abs(numpy.diff(table[:, 5])) > 0.1)[number - 1] + 1
-        part = table[change - round(1e3 * BEFORE):change + round(1e3 * AFTER)]
-        self.times = 1e-3 * (part[:, 0] - part[0, 0])
-        self.voltage, self.hub, self.tip = part[:, 6], part[:, 1], sign * part[:, 2]
-        self.start = self.hub[:50].mean()
 
 
 class Arm:
@@ -58,47 +49,27 @@ class Arm:
         return [numpy.interp(self.step.times - delay, rows[:, 0], sign * rows[:, i])
                 for i, (delay, sign) in enumerate(zip(delays, (1, -1)), 1)]
 
-    def fit(self, delays, unknowns, known):
+    def fit(self, delays):
         """An Estimate of the unknowns, and the sum of squares relative to the record's spread."""
         step = self.step
         hub, tip = (numpy.interp(step.times + delay, step.times, column, right=numpy.nan)[::10]
                     for delay, column in zip(delays, (step.hub, step.tip)))
-        estimate = fit_run(self.path, unknowns, step.times[::10], {HUB: hub, GAUGE: -tip},
-                           {**known, "start": step.start}, step=0.002)
-        curves = self.run({**known, **estimate.named}, delays)
+        estimate = fit_run(self.path, FIRST, step.times[::10], {HUB: hub, GAUGE: -tip}, {"start": step.start},
+                           step=0.002)
+        curves = self.run(estimate.named, delays)
         return estimate, sum(((each - column) ** 2).mean() / column.var()
                              for each, column in zip(curves, (step.hub, step.tip)))
 
 
-def metrics(times, hub, tip, start, end):
-    """Time to 90 % of the step, extremum of the hub, and first and second extremum of the tip with their times."""
-    after = times >= BEFORE
-    t, part = times[after] - BEFORE, (hub[after] - start) / (end - start)
-    sense = numpy.sign(end - start)
-    first = numpy.argmin(numpy.where(t < 0.35, sense * tip[after], numpy.inf))
-    second = numpy.argmax(numpy.where((t > 0.3) & (t < 0.8), sense * tip[after], -numpy.inf))
-    return {"t90_s": t[numpy.argmax(part >= 0.9)], "hub_extremum_rad": start + (end - start) * part.max(),
-            "tip1_m": tip[after][first], "t1_s": t[first], "tip2_m": tip[after][second], "t2_s": t[second]}
-
-
-def identify(case, arm, name):
-    """Values of the first rig, and the delays of its signals: those of the best of several searches. Tells them."""
-    tries = {delays: arm.fit(delays, FIRST, {}) for delays in itertools.product(HUB_DELAYS, GAUGE_DELAYS)}
+def identify(case, arm, all_delays):
+    """Values of a rig, and the delays of its signals: those of the best of several searches. Tells them."""
+    tries = {delays: arm.fit(delays) for delays in all_delays}
     delays = min(tries, key=lambda each: tries[each][1])
     estimate = tries[delays][0].with_chosen(delays, [numpy.diff(each)[0] for each in (HUB_DELAYS, GAUGE_DELAYS)],
                                             DELAYS)
     for (label, unit, factor), value, error in zip(TOLD, estimate.values, estimate.standard_errors):
-        case.identify(label, factor * value, unit, name, factor * error)
+        case.identify("%s of %s" % (label, arm.step.rig), factor * value, unit, arm.step.name, factor * error)
     return estimate
-
-
-def identify_friction(case, arm, name, estimate):
-    """Values of another rig of the same kind: only its friction is its own."""
-    known = {key: value for key, value in estimate.named.items() if key not in ("dry", *DELAYS)}
-    own, _ = arm.fit([estimate.named[key] for key in DELAYS], {"dry": estimate.named["dry"]}, known)
-    (value,), (error,) = own.values, own.standard_errors
-    case.identify("dry friction of unit 7", value, "N m", name, error)
-    return estimate.with_other("dry", value, error)
 
 
 def predict(arm, estimate, row):
@@ -117,24 +88,23 @@ def predict(arm, estimate, row):
 
 
 def compare(case):
-    curves, estimate = [], None
+    curves, estimate, delays = [], None, list(itertools.product(HUB_DELAYS, GAUGE_DELAYS))
     for row in case.table("numbers.csv"):
-        step = Step(case.record(row["record"]), int(row["step"]), row["sign"])
+        step = Step(case, row)
         arm = Arm(case, step)
-        name = "%s, step %d" % ("unit 6" if "Unit6" in row["record"] else "unit 7", row["step"])
         is_fitted = row["step"] == 1
-        if estimate is None:
-            estimate = identify(case, arm, name)
-        elif is_fitted:
-            estimate = identify_friction(case, arm, name, estimate)
+        if is_fitted:
+            estimate = identify(case, arm, delays)
+            delays = [tuple(estimate.named[name] for name in DELAYS)]  # both rigs have the same signals
         found, parts, curve = predict(arm, estimate, row)
-        curves.append((name, step, *curve))
+        curves.append((step.name, step, *curve))
         hub_range = OVERSHOOT * abs(row["to_rad"] - row["from_rad"])
         for key, label, unit, uncertainty in (
                 ("t90_s", "time to 90 %", "s", TIME), ("hub_extremum_rad", "extremum of the hub", "rad", hub_range),
                 ("tip1_m", "first extremum of the tip", "m", None), ("t1_s", "its time", "s", TIME),
                 ("tip2_m", "second extremum of the tip", "m", None), ("t2_s", "its time", "s", TIME)):
-            yield Row("%s: %s" % (name, label), row[key], found[key], uncertainty or DEFLECTION * abs(row[key]), unit,
+            own = uncertainty or DEFLECTION * abs(row[key])
+            yield Row("%s: %s" % (step.name, label), row[key], found[key], own, unit,
                       note="own: steps of a rig differ by this", is_fitted=is_fitted, group=GROUPS[key],
                       propagated=parts[key])
     case.draw(lambda axes: draw(axes, curves), columns=4, rows=2, width=3.2, height=2.5)

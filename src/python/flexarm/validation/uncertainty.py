@@ -76,14 +76,6 @@ class Estimate:
         covariance[:count, :count] = self.covariance
         return Estimate(numpy.append(self.values, values), covariance, self.freedom, (*self.names, *names))
 
-    def with_other(self, name, value, standard_error):
-        """With another value of one of the numbers, which was identified by itself."""
-        i = self.names.index(name)
-        values, covariance = self.values.copy(), self.covariance.copy()
-        values[i], covariance[i], covariance[:, i] = value, 0.0, 0.0
-        covariance[i, i] = standard_error ** 2
-        return Estimate(values, covariance, self.freedom, self.names)
-
 
 def from_fit(values, covariance, squares, numbers):
     """An estimate by weighted least squares.
