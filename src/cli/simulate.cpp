@@ -139,14 +139,16 @@ void print_failure(const Simulation& simulation, const Run& run) {
              simulation.explain(run.last));
 }
 
-/// Prints what went wrong and where the last good state is.
-void report_failure(const SimulateArguments& arguments, const Simulation& simulation, const Run& run) {
+/// Prints what went wrong and where the last good state is. `is_repeated`: whether the run was one with refine="true".
+void report_failure(const SimulateArguments& arguments, const Simulation& simulation, const Run& run,
+                    bool is_repeated) {
   const std::string kept = !arguments.checkpoint.empty()
                                ? arguments.checkpoint
                                : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
   print_failure(simulation, run);
   write_checkpoint(simulation, kept);
-  fmt::print(stderr, "flexarm: the last good state is kept in '{}'\n", kept);
+  fmt::print(stderr, "flexarm: the last good state is kept in '{}'{}\n", kept,
+             is_repeated ? "; to read it, write refine=\"true\" in the beams of the scene" : "");
 }
 
 void print_warnings(const Simulation& simulation, const Run& run) {
@@ -186,27 +188,29 @@ void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   }
 }
 
-/// Whether a run that failed may be done again from its beginning: nobody has read its results yet, and no state of it
-/// is kept, which would have another mesh than the scene.
+/// Whether a run that failed may be done again from its beginning: nobody has read its results yet, no state of it is
+/// wanted, which would have another mesh than the scene, and nobody has interrupted it, who wants what there is.
 bool may_be_repeated(const SimulateArguments& arguments, const Simulation& simulation) {
   std::error_code none;
   const bool is_file =
       !is_standard_output(arguments.output) && std::filesystem::is_regular_file(arguments.output, none);
-  return (is_file || arguments.output.empty()) && arguments.resume.empty() && arguments.checkpoint.empty() &&
-         !arguments.estimates_error && !wanted_accuracy(arguments, simulation);
+  return interruption() == 0 && (is_file || arguments.output.empty()) && arguments.resume.empty() &&
+         arguments.checkpoint.empty() && !arguments.estimates_error && !wanted_accuracy(arguments, simulation);
 }
 
 /// The scene for another run, after one that failed since elements of a beam with refine="auto" have wound up: with
 /// refine="true" where possible. These elements cannot be halved as late as that. (docs/notes/refinement.md 9)
 /// @returns nothing if the run must not be repeated
 std::optional<scene::SceneDescription> scene_to_repeat(const SimulateArguments& arguments,
-                                                       scene::SceneDescription scene, const Simulation& simulation,
-                                                       const StepResult& last) {
+                                                       const scene::SceneDescription& scene,
+                                                       const Simulation& simulation, const StepResult& last) {
   if (last.reason != StepResult::Reason::BentTooFar || !may_be_repeated(arguments, simulation)) return std::nullopt;
-  const std::optional<bool>& refine = scene.links[last.failure.place.link].beam->refine;
-  const bool was_open = !refine;
-  refine_where_possible(scheme_of(simulation), model_of(simulation), scene);
-  return was_open && refine ? std::optional(std::move(scene)) : std::nullopt;
+  const int link = last.failure.place.link;
+  if (scene.links[link].beam->refine) return std::nullopt;
+  std::optional<scene::SceneDescription> refined = scene;
+  refine_where_possible(scheme_of(simulation), model_of(simulation), *refined);
+  if (!refined->links[link].beam->refine) refined.reset();
+  return refined;
 }
 
 }  // namespace
@@ -225,7 +229,8 @@ int simulate(SimulateArguments arguments) {
   if (!arguments.vtk.empty() || is_page(arguments.output)) arguments.picture = picture_for(arguments, simulation);
   catch_interruptions();
   Run result = run_and_keep(arguments, simulation);
-  if (std::optional<scene::SceneDescription> again = scene_to_repeat(arguments, scene, simulation, result.last)) {
+  std::optional<scene::SceneDescription> again = scene_to_repeat(arguments, scene, simulation, result.last);
+  if (again) {
     print_failure(simulation, result);
     fmt::print(
         stderr,
@@ -236,7 +241,7 @@ int simulate(SimulateArguments arguments) {
   }
   print_warnings(simulation, result);
   if (!result.last.converged) {
-    report_failure(arguments, simulation, result);
+    report_failure(arguments, simulation, result, again.has_value());
     return kFailed;
   }
   if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);

@@ -232,6 +232,22 @@ TEST_P(ExplicitSensors, HoldJointsAsMotionsDo) {
   }
 }
 
+// With a sensor, a joint with a constant motion is not held but driven. In short steps, too, it does not accelerate:
+// what is left is the round-off of velocities over the step, not that of positions over its square.
+TEST_P(ExplicitSensors, DriveWhatIsHeldWithoutThem) {
+  const SceneBuilder held = arm_with_held_joints("0.4");
+  SceneBuilder driven = held;
+  driven.sensor("at_elbow", scene::SensorKind::Reaction, "middle");
+  constexpr double kEnd = 1e-4, kRoundOff = 1e-15;
+  constexpr int kSteps = 20;
+  const Simulation s = after(held, kEnd, kSteps), other = after(driven, kEnd, kSteps);
+  ASSERT_LT(model_of(other).held.size(), model_of(s).held.size());
+  for (const char* joint : {"elbow", "rail"}) {
+    const std::size_t i = *s.find_coordinate(joint), j = *other.find_coordinate(joint);
+    EXPECT_NEAR(s.effort(i), other.effort(j), kRoundOff * kSteps / kEnd * std::abs(s.effort(i)));
+  }
+}
+
 TEST_P(ExplicitSensors, HoldJointsAsEmDoes) {
   const SceneBuilder b = arm_with_held_joints("0.4");
   const Simulation s = after(b, 0.4, 200);
