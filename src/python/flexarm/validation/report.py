@@ -157,7 +157,7 @@ Rows that were used to identify a number are *fitted*, and do not count.
 
 Uncertainties are expanded ones, about 95 % (k = 2). They have two parts, whose squares add up: the row's own one, of
 the measurement and of what the scene is made of, and that of the identified numbers, propagated to the predicted row
-(ASME V&V 20, GUM). [How it is done](../../bench/validation/README.md#uncertainty).
+(ASME V&V 20, GUM). The README of [bench/validation](../../bench/validation) says how.
 
 The first count is the strict one. Beside it: how many measured rows are outside, how many would be by chance if the
 uncertainties of 95 % were all there is (5 % of them in the mean; at most so many in 95 of 100 cases, by the binomial
