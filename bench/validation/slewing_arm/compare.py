@@ -2,9 +2,7 @@
 
 import itertools
 import os
-import shutil
 import sys
-import tempfile
 
 import numpy
 
@@ -13,7 +11,7 @@ from flexarm.validation import Row
 from flexarm.validation.fits import fit_run
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from records import Step, metrics  # noqa: E402
+import records  # noqa: E402
 
 HUB_DELAYS, GAUGE_DELAYS = (0.0, 0.01, 0.02), (0.06, 0.07, 0.08)  # that are tried [s]
 GROUPS = {"t90_s": "hub", "hub_extremum_rad": "hub", "tip1_m": "first swing", "t1_s": "first swing",
@@ -29,17 +27,13 @@ HUB, GAUGE = "joint/hub/position", "sensor/gauge/strain"
 DEFLECTION, TIME, OVERSHOOT = 0.10, 0.03, 0.05  # relative; s; of the step, which friction may leave
 
 
-class Arm:
-    """The scene with the voltage of a step, in a folder of its own."""
+class Arm(records.Arm):
+    """The scene with the voltage of a step."""
 
     def __init__(self, case, step):
-        self._folder = tempfile.TemporaryDirectory()
-        self.path = shutil.copy(case.path("arm.urdf"), self._folder.name)
-        self.step = step
         values = {parameter.name: parameter.value for parameter in case.scene("arm.urdf").parameters}
         torque = values["gear"] * values["motor"] / values["resistance"] * step.voltage
-        numpy.savetxt(os.path.join(self._folder.name, "torque.csv"), numpy.column_stack([step.times, torque]), "%.9g",
-                      ",", header="time,torque", comments="")
+        super().__init__(case, step, "torque.csv", {"time": step.times, "torque": torque})
 
     def run(self, values, delays):
         """What would be measured: hub's angle and tip's deflection at the times of the step."""
@@ -74,23 +68,22 @@ def identify(case, arm, all_delays):
 
 def predict(arm, estimate, row):
     """The numbers of a row of the table and their uncertainties, and the curves of hub and tip."""
-    curves = []  # of the values themselves, then of their neighbours
+    def run(values):
+        return arm.run(values, [values.pop(name) for name in DELAYS])
 
-    def numbers(x):
-        values = dict(zip(estimate.names, x))
-        curves.append(arm.run(values, [values.pop(name) for name in DELAYS]))
-        found = metrics(arm.step.times, *curves[-1], row["from_rad"], row["to_rad"])
+    def numbers(curves):
+        found = records.metrics(arm.step.times, *curves, row["from_rad"], row["to_rad"])
         return [found[key] for key in GROUPS]
 
     # Short differences, since the inertia is hardly known.
-    found, parts = estimate.predict(numbers, 0.2)
-    return dict(zip(GROUPS, found)), dict(zip(GROUPS, parts)), curves[0]
+    found, parts, curves = records.predict(run, numbers, estimate, 0.2)
+    return dict(zip(GROUPS, found)), dict(zip(GROUPS, parts)), curves
 
 
 def compare(case):
     curves, estimate, delays = [], None, list(itertools.product(HUB_DELAYS, GAUGE_DELAYS))
     for row in case.table("numbers.csv"):
-        step = Step(case, row)
+        step = records.Step(case, row)
         arm = Arm(case, step)
         is_fitted = row["step"] == 1
         if is_fitted:

@@ -1,5 +1,9 @@
 """Records of the slewing arm: a step of the reference, and its numbers."""
 
+import os
+import shutil
+import tempfile
+
 import numpy
 
 BEFORE, AFTER = 0.1, 2.4  # the step of the reference; from the records [s]
@@ -29,3 +33,29 @@ def metrics(times, hub, tip, start, end):
     second = numpy.argmax(numpy.where((t > 0.3) & (t < 0.8), sense * tip[after], -numpy.inf))
     return {"t90_s": t[numpy.argmax(part >= 0.9)], "hub_extremum_rad": start + (end - start) * part.max(),
             "tip1_m": tip[after][first], "t1_s": t[first], "tip2_m": tip[after][second], "t2_s": t[second]}
+
+
+class Arm:
+    """The scene of a case with columns of a step in its table, in a folder of its own."""
+
+    def __init__(self, case, step, table, columns):
+        """table: name of the file. columns: by their names, shape (rows,) each; the first is the time [s]."""
+        self._folder = tempfile.TemporaryDirectory()
+        self.path = shutil.copy(case.path("arm.urdf"), self._folder.name)
+        self.step = step
+        numpy.savetxt(os.path.join(self._folder.name, table), numpy.column_stack(list(columns.values())), "%.9g", ",",
+                      header=",".join(columns), comments="")
+
+
+def predict(run, numbers, estimate, step=1.0):
+    """Numbers of curves, their uncertainties by an Estimate (see Estimate.predict), and the curves themselves.
+
+    run: gives curves by the dictionary of the values. numbers: of curves, a list.
+    """
+    curves = []  # of the values themselves, then of their neighbours
+
+    def model(x):
+        curves.append(run(dict(zip(estimate.names, x))))
+        return numbers(curves[-1])
+
+    return (*estimate.predict(model, step), curves[0])

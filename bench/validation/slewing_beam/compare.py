@@ -1,9 +1,7 @@
 """The flexible arm of the slewing rig by itself: deflection of its tip, with the hub moved as measured."""
 
 import os
-import shutil
 import sys
-import tempfile
 
 import numpy
 
@@ -13,7 +11,7 @@ from flexarm.validation.fits import fit_run
 
 RECORDS = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "slewing_arm")
 sys.path.insert(0, RECORDS)
-from records import Step, metrics  # noqa: E402
+import records  # noqa: E402
 
 DELAYS = 0.04, 0.05, 0.06, 0.07, 0.08  # of the gauge, that are tried [s]
 GAUGE = "sensor/gauge/strain"
@@ -25,19 +23,14 @@ NUMBERS = [("tip1_m", "first extremum of the tip", "m", "first swing"), ("t1_s",
            ("tip2_m", "second extremum of the tip", "m", "second swing"), ("t2_s", "its time", "s", "second swing")]
 
 
-class Arm:
-    """The scene with the hub's motion of a step, in a folder of its own."""
+class Arm(records.Arm):
+    """The scene with the hub's motion of a step."""
 
     def __init__(self, case, step):
         from scipy.signal import savgol_filter
-        self._folder = tempfile.TemporaryDirectory()
-        self.path = shutil.copy(case.path("arm.urdf"), self._folder.name)
-        self.step = step
         position, rate = (savgol_filter(step.hub, WINDOW, 3, deriv=order, delta=1e-3)[::10] for order in (0, 1))
         rate[0] = rate[-1] = 0
-        numpy.savetxt(os.path.join(self._folder.name, "hub.csv"),
-                      numpy.column_stack([step.times[::10], position, rate]), "%.9g", ",",
-                      header="time,position,rate", comments="")
+        super().__init__(case, step, "hub.csv", {"time": step.times[::10], "position": position, "rate": rate})
 
     def run(self, values, delay):
         """The gauge's deflection at the times of the step."""
@@ -68,21 +61,17 @@ def identify(case, arm, delays):
 
 def predict(arm, estimate, row):
     """The numbers of a row and their uncertainties, and the curve of the tip."""
-    curves = []  # of the values themselves, then of their neighbours
-
-    def numbers(x):
-        values = dict(zip(estimate.names, x))
-        curves.append(arm.run(values, values.pop("delay")))
-        found = metrics(arm.step.times, arm.step.hub, curves[-1], row["from_rad"], row["to_rad"])
+    def numbers(tip):
+        found = records.metrics(arm.step.times, arm.step.hub, tip, row["from_rad"], row["to_rad"])
         return [found[key] for key, *_ in NUMBERS]
 
-    return (*estimate.predict(numbers), curves[0])
+    return records.predict(lambda values: arm.run(values, values.pop("delay")), numbers, estimate)
 
 
 def compare(case):
     curves, estimates = [], {}
     for row in case.table(os.path.join(RECORDS, "numbers.csv")):
-        arm = Arm(case, Step(case, row))
+        arm = Arm(case, records.Step(case, row))
         rig, is_fitted = arm.step.rig, row["step"] == 1
         if is_fitted:
             estimates[rig] = identify(case, arm, DELAYS)
