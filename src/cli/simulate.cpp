@@ -188,8 +188,8 @@ void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   }
 }
 
-/// Whether a run that failed may be done again from its beginning: nobody has read its results yet, no state of it is
-/// wanted, which would have another mesh than the scene, and nobody has interrupted it, who wants what there is.
+/// Whether a run that failed may be done again from its beginning. It may not if somebody has read its results already,
+/// if a state of it is wanted, since that would have another mesh than the scene, or if it was interrupted.
 bool may_be_repeated(const SimulateArguments& arguments, const Simulation& simulation) {
   std::error_code none;
   const bool is_file =

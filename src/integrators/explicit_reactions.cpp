@@ -1,6 +1,7 @@
 #include "integrators/explicit_reactions.h"
 
 #include "integrators/explicit_loads.h"
+#include "integrators/held_efforts.h"
 
 namespace flexarm {
 namespace {
@@ -16,21 +17,6 @@ Matrix3 rotation_of(const ArticulatedBodies& bodies, int node) {
 /// Moves the point that a wrench's moment is about by `way`.
 Vector6 about(Vector6 wrench, const Vector3& way) {
   wrench.tail<3>() -= way.cross(Vector3(wrench.head<3>()));
-  return wrench;
-}
-
-/// The rate of momentum of the links that a held joint carries, minus their weight, about their centre of mass.
-Vector6 needed_wrench(const HeldJoint& held, int node, const Vector3& gravity, const ArticulatedBodies& bodies) {
-  Vector6 wrench = Vector6::Zero();
-  wrench.head<3>() = -held.mass * gravity;
-  if (node < 0) return wrench;
-  const Matrix3& rotation = bodies.rotation(node);
-  const Vector3 centre = rotation * held.centre, spin = bodies.velocity(node).tail<3>(),
-                change = bodies.acceleration(node).tail<3>();
-  const Matrix3 inertia = rotation * held.inertia * rotation.transpose();
-  wrench.head<3>() += held.mass * (bodies.acceleration(node).head<3>() + change.cross(centre) +
-                                   spin.cross(Vector3(spin.cross(centre))));
-  wrench.tail<3>() = inertia * change + spin.cross(Vector3(inertia * spin));
   return wrench;
 }
 
@@ -52,7 +38,9 @@ double ExplicitReactions::held_effort(const HeldJoint& held, const ArticulatedBo
   const int node = joint.master;
   const Vector3 place = position_of(bodies, node);
   const Matrix3 rotation = rotation_of(bodies, node);
-  Vector6 wrench = about(needed_wrench(held, node, model_.gravity, bodies), -(rotation * held.centre));
+  Vector6 wrench = node < 0 ? Vector6(Vector6::Zero()) : momentum_rate(held, state.nodes[node]);
+  wrench.head<3>() -= held.mass * model_.gravity;
+  wrench = about(wrench, -(rotation * held.centre));
   for_each_load(model_, state, values, bodies, [&](const NodalLoad& load, const Vector6& acting) {
     if (load.link >= 0 && held.links[load.link]) wrench -= acting;
   });

@@ -18,6 +18,7 @@ class ExplicitReactions {
   bool any() const { return !model_.reactions.empty() || !model_.held.empty(); }
   /// Writes them into the state. `bodies`: those that know what joints transmit. `closures`: per loop closure, the
   /// wrench {force, moment about the node} on its child. `values`: of the model's functions of time, at the end.
+  /// The nodes of `state` are those at the end already.
   void accept(const ArticulatedBodies& bodies, const std::vector<Vector6>& closures, const std::vector<double>& values,
               State& state) const;
 

@@ -15,15 +15,16 @@ Vector6 body_momentum(const HeldJoint& held, const NodeState& node) {
   out << held.mass * (node.velocity + node.orientation * W.cross(held.centre)), node.orientation * (held.inertia * W);
   return out;
 }
-Vector6 body_momentum_rate(const HeldJoint& held, const NodeState& node) {
+
+}  // namespace
+
+Vector6 momentum_rate(const HeldJoint& held, const NodeState& node) {
   const Vector3 &W = node.angular_velocity, &A = node.angular_acceleration, &c = held.centre;
   Vector6 out;
   out << held.mass * (node.acceleration + node.orientation * Vector3(A.cross(c) + W.cross(W.cross(c)))),
       momentum_rate(node.orientation.toRotationMatrix(), held.inertia, {W, A});
   return out;
 }
-
-}  // namespace
 
 void HeldEfforts::add_inertia(const HeldJoint& held, int node, Vector6& wrench) const {
   const StepConfiguration& step = configuration_;
@@ -39,7 +40,7 @@ void HeldEfforts::add_inertia(const HeldJoint& held, int node, Vector6& wrench) 
   const double later = 1 / step.effort_weight() - 1;
   end.acceleration += later * (end.acceleration - begin.acceleration);
   end.angular_acceleration += later * (end.angular_acceleration - begin.angular_acceleration);
-  wrench += body_momentum_rate(held, end);
+  wrench += momentum_rate(held, end);
 }
 
 double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residual) {

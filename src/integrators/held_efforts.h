@@ -9,6 +9,10 @@
 
 namespace flexarm {
 
+/// The rate of momentum of the rigid links that a held joint carries, as {force, moment about their centre of mass}, in
+/// world axes. `node`: of the joint's master, to which they belong.
+Vector6 momentum_rate(const HeldJoint& held, const NodeState& node);
+
 /// A held joint does not appear in the balance of a step. Its effort is the component along its axis of the wrench that
 /// it transmits: the rate of momentum of the rigid links that it carries, minus their loads, plus what the joints
 /// outboard transmit. All of these are known after the step, so that the step itself costs nothing more.

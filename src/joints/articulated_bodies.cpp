@@ -186,7 +186,7 @@ void ArticulatedBodies::pass_on(Link& link, const double* efforts, const double*
   bias += inertia * link.drift;
   Body& master = bodies_[link.master];
   master.inertia += inertia.moved(link.way);
-  master.bias += {bias.linear, bias.angular + cross(link.way, bias.linear)};
+  master.bias += moved_force(bias, link.way);
 }
 
 PaddedSpatial ArticulatedBodies::carried_acceleration(const Link& link) const {
@@ -226,7 +226,7 @@ void ArticulatedBodies::find_needed_efforts(const double* rates_change, const do
     for (int k = link.first; k < link.first + link.count; ++k)
       efforts[k] = dot(link.columns[k - link.first], force) + armatures[k] * rates_change[k];
     if (link.master < 0) continue;
-    forces_[link.master] += {force.linear, force.angular + cross(link.way, force.linear)};
+    forces_[link.master] += moved_force(force, link.way);
   }
 }
 
@@ -238,7 +238,7 @@ void ArticulatedBodies::add_power(int node, PaddedSpatial force, double* row) co
   while (node >= 0) {
     const Link& link = links_[carriers_[node]];
     for (int k = 0; k < link.count; ++k) row[link.first + k] += dot(link.columns[k], force);
-    force.angular += cross(link.way, force.linear);
+    force = moved_force(force, link.way);
     node = link.master;
   }
 }

@@ -147,6 +147,11 @@ struct PaddedSpatial {
   }
 };
 
+/// {f, m} about another point, from which the present one is `way` away.
+[[gnu::always_inline]] inline PaddedSpatial moved_force(const PaddedSpatial& force, const Padded3& way) {
+  return {force.linear, force.angular + cross(way, force.linear)};
+}
+
 [[gnu::always_inline]] inline double dot(const PaddedSpatial& a, const PaddedSpatial& b) {
   return sum(a.linear.values * b.linear.values + a.angular.values * b.angular.values);
 }

@@ -20,7 +20,8 @@ struct MechanismMotion;
 const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
 /// The scheme in use. Its constants that depend on the step are those of the first step (see
-/// Simulation::set_step_size()), so that make_scheme(simulation.scene().integrator) may return a different scheme.
+/// Simulation::set_step_size()), or of set_step_of_constants(), so that make_scheme(simulation.scene().integrator) may
+/// return a different scheme.
 const Scheme& scheme_of(const Simulation& simulation);
 /// The integrator with which that scheme was made and the initial state was found.
 const IntegratorDescription& first_integrator_of(const Simulation& simulation);
