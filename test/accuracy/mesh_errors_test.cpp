@@ -7,6 +7,7 @@
 
 #include "accuracy/automatic_meshes.h"
 #include "accuracy/ramped_cantilever.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
@@ -107,7 +108,7 @@ TEST(AutomaticMeshes, AreTheFewestElements) {
 
 /// A stiff rod that falls about a hinge. `more` adds an element to the scene.
 scene::SceneDescription stiff_pendulum(const std::string& more) {
-  const scene::ReadResult read = scene::read_scene_text(
+  return test::scene_of(
       R"(<robot name="pendulum">
     <link name="world"/>
     <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
@@ -115,13 +116,11 @@ scene::SceneDescription stiff_pendulum(const std::string& more) {
       <centerline> <line to="1 0 0"/> </centerline>
       <circle radius="0.05"/> <material young="200e9" poisson="0.3" density="7800"/>
     </beam> </link>
-    )" + more +
-          R"(
+    )" +
+      more +
+      R"(
     <simulation> <probe name="tip" link="rod" at="1 0 0"/> </simulation>
-  </robot>)",
-      "pendulum");
-  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
-  return *read.scene;
+  </robot>)");
 }
 
 TEST(AutomaticMeshes, AreNoneWhereABeamMayBeRigid) {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "accuracy/trial_runs.h"
-#include "flexarm/scene/urdf_reader.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 
@@ -29,9 +29,7 @@ inline scene::SceneDescription ramped_cantilever(const std::string& mesh) {
     </simulation>
   </robot>)scene",
                                        mesh);
-  const scene::ReadResult read = scene::read_scene_text(text, "ramp");
-  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
-  return *read.scene;
+  return scene_of(text);
 }
 
 constexpr JudgedTimes kOneSecond{0.02, 50};

@@ -9,9 +9,10 @@
 
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/accuracy/companion.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
+#include "reference/observed_order.h"
 #include "simulation/inside.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -45,9 +46,7 @@ scene::SceneDescription oscillator(const char* scheme, double viscosity) {
     </robot>)",
                   kStiffness, viscosity > 0 ? fmt::format("<damping stiffness_proportional=\"{}\"/>", viscosity) : "",
                   kMass, scheme, kPush);
-  const scene::ReadResult read = scene::read_scene_text(text, "oscillator");
-  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
-  return *read.scene;
+  return scene_of(text);
 }
 
 /// Displacement of the mass after a time, from m x'' + eta k x' + k x = F.
@@ -82,6 +81,20 @@ TEST_P(StepConstants, FollowTheSteps) {
     EXPECT_LT(std::sqrt(squares / static_cast<double>(path.size())), accuracy * largest);
     EXPECT_EQ(step_of_constants(simulation), 0.01);
   }
+}
+
+// Steps of 0.1 ms have hardly any error of their own.
+TEST_P(StepConstants, HaveAnEffectOfSecondOrder) {
+  const auto [scheme, viscosity] = GetParam();
+  double errors[2];
+  for (const int k : {0, 1}) {
+    Simulation simulation(oscillator(scheme, viscosity));
+    set_step_of_constants(simulation, 0.01 / (1 << k));
+    simulation.set_step_size(1e-4);
+    while (simulation.time() < kUntil - 0.5e-4) ASSERT_TRUE(simulation.step().converged);
+    errors[k] = std::abs(simulation.probe_pose(0).position[0] - 1 - exact(viscosity, kUntil));
+  }
+  EXPECT_NEAR(observed_order(errors[0], errors[1]), 2, 0.3) << errors[0] << " " << errors[1];
 }
 
 TEST_P(StepConstants, ChangeWithAnExactAccount) {

@@ -3,31 +3,22 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "reference/explicit_runs.h"
+#include "reference/observed_order.h"
 #include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
 namespace {
 
-struct ExplicitGear {
-  const char* name;
-  int order;
-  int steps;  ///< in a second, with errors far above round-off for twice as many
-};
-
-class ExplicitDrives : public ::testing::TestWithParam<ExplicitGear> {
+class ExplicitDrives : public ExplicitRuns {
  protected:
-  Simulation after(const SceneBuilder& b, double end, int steps) const {
-    Simulation s(b.scene, options(GetParam().name, end / steps, 1e-12));
-    run(s, steps);
-    return s;
-  }
   /// Expects error(simulation at `end`) to fall with `order` from `steps` to twice as many.
   template <class Error>
   void expect_order(const SceneBuilder& b, double end, int steps, double order, const Error& error) const {
     const double coarse = error(after(b, end, steps)), fine = error(after(b, end, 2 * steps));
     EXPECT_GT(fine, 1e-14);
-    EXPECT_GT(std::log2(coarse / fine), order - 0.5) << coarse << " " << fine;
-    EXPECT_LT(std::log2(coarse / fine), order + 1) << coarse << " " << fine << ": terms of higher order are left";
+    EXPECT_GT(observed_order(coarse, fine), order - 0.5) << coarse << " " << fine;
+    EXPECT_LT(observed_order(coarse, fine), order + 1) << coarse << " " << fine << ": terms of higher order are left";
   }
 };
 
@@ -61,9 +52,8 @@ TEST_P(ExplicitDrives, TwistAGear) {
     const Energies energies = s.energies();
     EXPECT_EQ(s.effort(0), motor);
     EXPECT_NEAR(energies.work, motor * rotor.angle, 1e-12);
-    const double account = energies.total() + energies.dissipated - energies.work;
     return std::hypot(s.position(0) - position, s.velocity(0) - velocity) +
-           std::hypot(rotor.angle - position - twist, rotor.rate - velocity - rate) + std::abs(account);
+           std::hypot(rotor.angle - position - twist, rotor.rate - velocity - rate) + std::abs(energy_account(s));
   });
 }
 
@@ -102,8 +92,7 @@ TEST_P(ExplicitDrives, FollowAServoOnEitherSide) {
       const ActuatorState& rotor = state_of(s).actuators[0];
       Eigen::VectorXd now(5);
       now << s.position(0) - second, rotor.angle - second, s.velocity(0), rotor.rate, rotor.servo.integral;
-      const Energies energies = s.energies();
-      return (now - x).norm() + std::abs(energies.total() + energies.dissipated - energies.work);
+      return (now - x).norm() + std::abs(energy_account(s));
     });
   }
 }
@@ -237,9 +226,7 @@ TEST_P(ExplicitDrives, GoOnFromARestoredStateBitByBit) {
   SceneBuilder b = geared_wheel(0.1);
   b.scene.drives[0].backlash = 0.01;
   b.servo("shaft", 4, 0.5, 3).set_point = TimeFunction::parse("0.3*sin(5*t)");
-  SimulationOptions no_reuse = options(GetParam().name, 0.01, 1e-12);
-  no_reuse.reuse_factorisation = false;
-  Simulation s(b.scene, no_reuse);
+  Simulation s = without_memory(b);
   run(s, 17);
   const Snapshot middle = s.snapshot();
   run(s, 19);
@@ -251,9 +238,7 @@ TEST_P(ExplicitDrives, GoOnFromARestoredStateBitByBit) {
   EXPECT_EQ(state_of(s).actuators[0].angle, angle);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ExplicitDrives,
-                         ::testing::Values(ExplicitGear{"rk4", 4, 80}, ExplicitGear{"dop853", 8, 16}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Methods, ExplicitDrives, kExplicitMethods, method_name);
 
 }  // namespace
 }  // namespace flexarm::test

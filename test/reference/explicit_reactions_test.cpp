@@ -1,7 +1,7 @@
 // Tests what joints transmit under explicit schemes: sensors of reactions, and the efforts that hold held joints.
 #include <cmath>
 
-#include "reference/dynamics_runs.h"
+#include "reference/explicit_runs.h"
 #include "reference/observed_order.h"
 #include "support/loops.h"
 
@@ -10,14 +10,7 @@ namespace {
 
 using scene::JointKind;
 
-class ExplicitSensors : public ::testing::TestWithParam<const char*> {
- protected:
-  Simulation after(const SceneBuilder& b, double end, int steps) const {
-    Simulation s(b.scene, options(GetParam(), end / steps, 1e-12));
-    run(s, steps);
-    return s;
-  }
-};
+class ExplicitSensors : public ExplicitRuns {};
 
 Vector6 sensed(const Simulation& s, std::size_t sensor) {
   const ActingWrench acting = s.sensed_wrench(sensor);
@@ -56,7 +49,7 @@ TEST_P(ExplicitSensors, HoldAPendulum) {
   b.joint("hinge", JointKind::Continuous, "world", "bob", {0, 0, 0}, {0, 1, 0});
   b.sensor("pivot", scene::SensorKind::Reaction, "bob");
   initial_joint(b, "hinge", 1.2, 0.7);
-  Simulation s(b.scene, options(GetParam(), 0.05, 1e-12));
+  Simulation s(b.scene, options(GetParam().name, 0.05, 1e-12));
   for (int n = 0; n < 20; ++n) {
     run(s, 1);
     const double angle = s.position(0), rate = s.velocity(0);
@@ -148,7 +141,7 @@ TEST_P(ExplicitSensors, BalanceTheLinksOfALoop) {
   SceneBuilder b = swinging_four_bar();
   for (scene::Sensor& sensor : b.scene.sensors)
     if (sensor.link == "coupler") sensor.at = {0.25, 0.02, 0.1};  // the centre of mass
-  Simulation s(b.scene, options(GetParam(), 2e-3, 1e-12));
+  Simulation s(b.scene, options(GetParam().name, 2e-3, 1e-12));
   const auto coupler = [&] {
     for (std::size_t i = 0; i < model_of(s).nodes.size(); ++i)
       if (model_of(s).inertias[i].total_mass == 0.5) return i;
@@ -181,7 +174,7 @@ SceneBuilder bent_pendulum(const std::string& motion) {
 // The effort of the elbow is the moment that turns the lower link: J w' + (arm x m (a - g)) along the axis.
 TEST_P(ExplicitSensors, HoldAJoint) {
   const double bend = 0.7;
-  Simulation s(bent_pendulum("0.7").scene, options(GetParam(), 0.02, 1e-12));
+  Simulation s(bent_pendulum("0.7").scene, options(GetParam().name, 0.02, 1e-12));
   ASSERT_EQ(model_of(s).held.size(), 1u);
   const double start = s.energies().total();
   for (int n = 0; n < 30; ++n) {
@@ -197,7 +190,7 @@ TEST_P(ExplicitSensors, HoldAJoint) {
     EXPECT_EQ(s.position(1), bend);
   }
   EXPECT_EQ(s.energies().work, 0);
-  EXPECT_NEAR(s.energies().total(), start, std::string(GetParam()) == "rk4" ? 1e-4 : 1e-9);
+  EXPECT_NEAR(s.energies().total(), start, GetParam().order == 4 ? 1e-4 : 1e-9);
 }
 
 /// An arm with a joint that is held at 0.4 rad, and another held one on it, between joints that move.
@@ -255,8 +248,7 @@ TEST_P(ExplicitSensors, HoldJointsAsEmDoes) {
     expect_limit_of_em(b, s, 1000, static_cast<int>(*s.find_coordinate(joint)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ExplicitSensors, ::testing::Values("rk4", "dop853"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, ExplicitSensors, kExplicitMethods, method_name);
 
 }  // namespace
 }  // namespace flexarm::test

@@ -10,18 +10,17 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/scene_text.h"
 #include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
 
 Simulation simulation_of(const std::string& text, const std::string& scheme, double step) {
-  const scene::ReadResult read = scene::read_scene_text(text, "explicit.urdf");
-  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
   SimulationOptions options;
   options.scheme = scheme;
   options.step = step;
-  return Simulation(*read.scene, options);
+  return Simulation(scene_of(text), options);
 }
 
 std::string link(const std::string& name, const std::string& centre, const std::string& inertias = "0.02 0.03 0.04") {

@@ -1,25 +1,16 @@
 // Tests servos and motors with limits under explicit schemes, against closed forms.
 #include <cmath>
 
+#include "reference/explicit_runs.h"
+#include "reference/observed_order.h"
 #include "reference/one_coordinate_scenes.h"
 #include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
 
-struct ExplicitMethod {
-  const char* name;
-  int order;
-  int steps;  ///< in a second, with errors far above round-off for twice as many
-};
-
-class ExplicitServos : public ::testing::TestWithParam<ExplicitMethod> {
+class ExplicitServos : public ExplicitRuns {
  protected:
-  Simulation after(const SceneBuilder& b, double end, int steps) const {
-    Simulation s(b.scene, options(GetParam().name, end / steps, 1e-12));
-    run(s, steps);
-    return s;
-  }
   /// Expects errors to fall with the order of the method. `expected`: position and velocity at `end`.
   void expect_order(const SceneBuilder& b, double end, const Eigen::Vector2d& expected) const {
     double errors[2];
@@ -28,7 +19,7 @@ class ExplicitServos : public ::testing::TestWithParam<ExplicitMethod> {
       errors[k] = std::hypot(s.position(0) - expected[0], s.velocity(0) - expected[1]);
     }
     EXPECT_GT(errors[1], 1e-14);
-    EXPECT_NEAR(std::log2(errors[0] / errors[1]), GetParam().order, 0.5) << errors[0] << " " << errors[1];
+    EXPECT_NEAR(observed_order(errors[0], errors[1]), GetParam().order, 0.5) << errors[0] << " " << errors[1];
   }
 };
 
@@ -106,7 +97,7 @@ TEST_P(ExplicitServos, FollowALimitedEffort) {
     EXPECT_NEAR(s.energies().work, limit * s.position(0), 1e-12);
     errors[k] = std::abs(state_of(s).actuators[0].servo.integral - expected);
   }
-  EXPECT_NEAR(std::log2(errors[0] / errors[1]), GetParam().order, 0.6) << errors[0] << " " << errors[1];
+  EXPECT_NEAR(observed_order(errors[0], errors[1]), GetParam().order, 0.6) << errors[0] << " " << errors[1];
 }
 
 // Where a set point jumps by J, the derivative strikes with kd J, and the velocity decays with kd/m.
@@ -195,9 +186,7 @@ TEST_P(ExplicitServos, GoOnFromARestoredStateBitByBit) {
     scene::ServoDescription& servo = servo_on(scene, ServoMode::Position, 60, 5, 10);
     servo.set_point = TimeFunction::parse("0.3*sin(5*t)");
     servo.sample_time = sample_time;
-    SimulationOptions no_reuse = options(GetParam().name, 0.01, 1e-12);
-    no_reuse.reuse_factorisation = false;
-    Simulation s(scene.scene, no_reuse);
+    Simulation s = without_memory(scene);
     run(s, 7);
     const Snapshot middle = s.snapshot();
     run(s, 9);
@@ -209,9 +198,7 @@ TEST_P(ExplicitServos, GoOnFromARestoredStateBitByBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ExplicitServos,
-                         ::testing::Values(ExplicitMethod{"rk4", 4, 80}, ExplicitMethod{"dop853", 8, 16}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Methods, ExplicitServos, kExplicitMethods, method_name);
 
 }  // namespace
 }  // namespace flexarm::test

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/command_refusal.h"
 #include "flexarm/simulation/simulation.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -25,9 +25,7 @@ Simulation gripper(const std::string& type, const std::string& more = "") {
   <joint name="right" type="continuous"><parent link="world"/><child link="rf"/><axis xyz="0 1 0"/>
     <mimic joint="left" offset="0.3"/></joint> <link name="rf">)" +
       inertial + "</link>" + more + "</robot>";
-  scene::ReadResult result = scene::read_scene_text(text, "gripper.urdf");
-  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
-  return Simulation(*result.scene);
+  return Simulation(scene_of(text));
 }
 
 std::string refused(const std::function<void()>& command) {

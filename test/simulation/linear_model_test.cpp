@@ -13,6 +13,7 @@
 #include "math/pi.h"
 #include "simulation/step_resolution.h"
 #include "support/dense_solution.h"
+#include "support/scene_text.h"
 #include "support/source_path.h"
 
 namespace flexarm {
@@ -22,9 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 Simulation simulation_of(const std::string& text) {
-  scene::ReadResult result = scene::read_scene_text(text, "test.urdf");
-  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
-  return Simulation(std::move(*result.scene));
+  return Simulation(test::scene_of(text));
 }
 
 // ---------------------------------------------------------------- closed forms
@@ -244,14 +243,13 @@ TEST(LinearModel, StateMatrixOfMovingRigidArm) {
 VectorXd defect(const std::string& text, const std::string& joint, const std::string& output, double effort,
                 double step = 0.01) {
   const int steps = static_cast<int>(std::lround(0.4 / step));
-  scene::ReadResult result = scene::read_scene_text(text, "test.urdf");
-  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
-  result.scene->starts_in_equilibrium = true;
+  scene::SceneDescription description = test::scene_of(text);
+  description.starts_in_equilibrium = true;
   SimulationOptions options;
   options.scheme = "em";
   options.step = step;
   options.tolerance = 1e-13;
-  Simulation simulation(std::move(*result.scene), options);
+  Simulation simulation(std::move(description), options);
   LinearRequest request;
   request.inputs = {"effort:" + joint};
   request.outputs = {"position:" + joint, "position:" + output + ":x", "position:" + output + ":y",

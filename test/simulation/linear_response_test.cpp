@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/scene_description.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/linear_reduction.h"
 #include "math/pi.h"
 #include "support/dense_solution.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
@@ -37,18 +37,16 @@ LinearModel oscillator(double frequency, double ratio) {
 
 /// A damped beam of three elements with input and outputs at its tip.
 LinearModel cantilever(const std::string& joint) {
-  scene::ReadResult result = scene::read_scene_text(R"(<robot name="cantilever"><link name="world"/>
+  scene::SceneDescription description = test::scene_of(R"(<robot name="cantilever"><link name="world"/>
     <joint name="root" type=")" + joint + R"("> <parent link="world"/> <child link="beam"/> <axis xyz="0 0 1"/> </joint>
     <link name="beam"> <beam elements="3" order="2"> <centerline> <line to="1 0 0"/> </centerline>
       <section ea="1e4" ga2="4e3" ga3="4e3" gj="8" ei2="10" ei3="12" mass="1" j1="2e-3" j2="1e-3" j3="1e-3"/>
       <damping stiffness_proportional="2e-3"/> </beam> </link>
-    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)",
-                                                    "test.urdf");
-  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
   LinearRequest request;
   request.inputs = {"wrench:beam/tip:fy", "wrench:beam/tip:fz"};
   request.outputs = {"position:beam/tip:y", "position:beam/tip:z", "acceleration:beam/tip:y"};
-  return linearise(Simulation(std::move(*result.scene)), request);
+  return linearise(Simulation(std::move(description)), request);
 }
 
 std::vector<double> logarithmic(double from, double to, int count) {
@@ -217,19 +215,17 @@ constexpr double kYoung = 70e9, kDensity = 2700, kDamping = 1e-4;  // damping of
 /// A clamped beam of 1 m. Its shear stiffness exceeds its bending stiffness by the squared ratio of length to
 /// thickness.
 LinearModel thin_beam(const std::string& section, const std::string& axis) {
-  scene::ReadResult result = scene::read_scene_text(R"(<robot name="thin"><link name="world"/><link name="arm">
+  scene::SceneDescription description = test::scene_of(R"(<robot name="thin"><link name="world"/><link name="arm">
     <beam elements="12" order="2"> <centerline> <line to="1 0 0"/> </centerline> <orientation y="0 1 0"/>)" +
-                                                        section +
-                                                        R"(<material young="70e9" poisson="0.3" density="2700"/>
+                                                       section +
+                                                       R"(<material young="70e9" poisson="0.3" density="2700"/>
       <damping stiffness_proportional="1e-4"/> </beam> </link>
     <joint name="clamp" type="fixed"> <parent link="world"/> <child link="arm"/> </joint>
-    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)",
-                                                    "test.urdf");
-  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
   LinearRequest request;
   request.inputs = {"wrench:arm/tip:f" + axis};
   request.outputs = {"position:arm/tip:" + axis};
-  return linearise(Simulation(std::move(*result.scene)), request);
+  return linearise(Simulation(std::move(description)), request);
 }
 
 struct ThinBeam {
