@@ -118,7 +118,7 @@ struct Companion::Implementation {
         share(1 / (std::pow(2, make_scheme(simulation.scene().integrator).order) - 1)) {
     if (!(window > 0)) throw std::invalid_argument(fmt::format("window: expected a time > 0, got {} s", window));
     companion.set_step_size(2 * simulation.step_size());
-    // Both have the errors of their own steps, also those of constants that the scheme takes from them.
+    // The scheme's constants follow the companion's step, so that its error includes what depends on these constants.
     set_step_of_constants(companion, 2 * step_of_constants(simulation));
     begin(simulation);
   }

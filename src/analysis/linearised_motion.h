@@ -61,8 +61,8 @@ class LinearisedMotion {
   bool is_damped() const;
   bool is_circulatory() const { return flexarm::is_circulatory(model_, state_); }
 
-  /// The second derivative of the potential, with multipliers and with rotors at rest. It is symmetric, unlike the
-  /// stiffness, whose tests are not the variations of the strains. The two differ by the elements' own error.
+  /// The second derivative of the potential, with multipliers and with rotors at rest. It is symmetric, but the
+  /// stiffness is not: elements are not tested with the variations of their strains. Both differ by the mesh's error.
   Eigen::SparseMatrix<double> curvature() const;
 
   /// The motion of all nodes and coordinates that belongs to an eigenvector. Does not set frequency and rate.

@@ -224,15 +224,14 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
   std::string text = fmt::format(
       "# Hard cases\n\nWritten by `flexarm bench hard`{}. {} scenes at which a simulator may fail, with the default"
       " options of a scene. Each run is a process of its own, limited to {} s of processor time and {:.1f} GiB.\n\n"
-      "A run is *right* if it completes, its end agrees with a closed form or a finer run, it stays within the "
-      "bounds of its case, its energy account gains less than 5 % of the motion's largest energy and loses at most "
-      "all of it, and the momenta of a free motion change by less than 5 %. With contact, the energy account must "
-      "gain at most 1e-4 of the largest energy, with and without the dissipated energy. Schemes that do not support "
-      "contacts or lines "
-      "skip these cases. A *warned* run is wrong, too, but ends with a warning that names the exceeded bound: "
-      "rotations per step, strains, the energy account. *Unsound* scenes (names in italics) cannot be built, have "
-      "no definite motion or far too coarse a mesh; they must be refused, or end with a reason that says more than "
-      "that the iteration did not converge.\n\n",
+      "A run is *right* if all of this holds. It completes. Its end agrees with a closed form or a finer run. It "
+      "stays within the bounds of its case. Its energy account gains less than 5 % of the motion's largest "
+      "energy, and loses at most all of it; with contact it gains at most 1e-4, with and without the dissipated "
+      "energy. The momenta of a free motion change by less than 5 %. Schemes that do not support contacts or "
+      "lines skip these cases. A *warned* run is not right either, but it ends with a warning that names the "
+      "bound that was exceeded: rotations per step, strains, the energy account. *Unsound* scenes (names in "
+      "italics) cannot be built, have no definite motion, or have far too coarse a mesh. They must be refused, "
+      "or end with a reason that says more than that the iteration did not converge.\n\n",
       report.options.quick ? " `--quick`: first steps only" : "", report.rows.size(), report.options.limits.seconds,
       static_cast<double>(report.options.limits.bytes) / (1 << 30));
   text += total_table(report);

@@ -141,8 +141,8 @@ ends early says when [s].
   the dissipative schemes contains what their memory of past strains stores.
 - **time asymmetry**: the same flight, 40 steps of 50 ms, velocities reversed, 40 steps: distance from the start. Not
   defined (–) for schemes with a memory.
-- **strain change**: of the curvature of a bent element when a rigid rotation is superposed on the way to it, two steps
-  of two iterates.
+- **strain change**: how much the curvature of a bent element changes when its motion, two steps of two iterates each,
+  is superposed by a rigid rotation.
 - **path: static**: distance between the tips of a loaded cantilever in equilibrium, found in 1, 4 and 16 load steps.
 - **spin**: change of the twist, and of the difference of the angular velocities, of a free two-node bar that twists to
   and fro, when it spins as a whole by half a radian a step.

@@ -107,8 +107,8 @@ class Articulation {
     return free;
   }
 
-  /// The column that moves most in a motion without inertia, when joints outboard can move. -1: there is no such
-  /// motion.
+  /// Where joints further outboard can move, some motion of this joint may have no inertia. Returns the column that
+  /// moves most in it, or -1 if there is no such motion.
   int dependent_of(const Columns& columns, const Square& rotors, int node) const {
     const Square locked = Square(columns.transpose() * locked_[node] * columns) + rotors;
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale = locked.diagonal().cwiseSqrt().cwiseInverse();

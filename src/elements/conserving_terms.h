@@ -285,10 +285,10 @@ void set_strains(const Element& element, const Motion& nodes, const Kinematics* 
 /// of the material. Rotary inertia is added elsewhere. Sets only the tangent of the linear terms; add_tangent()
 /// (conserving_tangent.h) adds the rest.
 ///
-/// Generalised shape functions for about the middle of the step test the moment rows and interpolate the increments.
-/// They are those of mid_functions() (MidFunctions::Explicit), or the average of those of the beginning and the end
-/// (Symmetric). The tangent does not include the variation of the latter. So Newton's method then converges linearly,
-/// by a factor that decreases with the step. Any such functions conserve momenta (sum I_g = 1) and, with the
+/// Generalised shape functions of an instant in the middle of the step test the moment rows and interpolate the
+/// increments. With MidFunctions::Explicit they are those of mid_functions(). With Symmetric they are the average of
+/// those at both ends; the tangent leaves out how this average varies, so Newton's method converges linearly, by a
+/// factor that decreases with the step. Any such functions conserve momenta (sum I_g = 1) and, with the
 /// multiplier, energy. With functions of the middle, Delta(strain) - s is of third order in the step. With Lagrange
 /// functions (beyond.md 1.1) it would be of first order in all deformed elements.
 ///

@@ -44,9 +44,9 @@ struct TendonPlan {
 /// A massless line. Guides that grip or have friction divide it into parts. A part has the same tension everywhere.
 /// Rims of pulleys that divide the line carry material from one part to the other, and material slips over guides with
 /// friction where the ratio of both tensions is exp(friction * angle of contact). The rest length that the function
-/// gives is divided among the parts in the ratio of their lengths at the start. The line leaves other pulleys when the
-/// angle of contact becomes negative, and touches them when it comes to their rim. Which pulleys it touches is settled
-/// between steps.
+/// gives is divided among the parts in the ratio of their lengths at the start. A pulley that does not divide the line
+/// is left when the angle of contact becomes negative, and touched when the line comes to its rim. Which ones it
+/// touches is settled between steps.
 ///
 /// Memory: the function's value; per part the rest length that its rims count from, and that has slipped away, and the
 /// rate at which it gains by slipping; then per guide whether the line touches it, and the angles at which it comes and

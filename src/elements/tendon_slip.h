@@ -26,9 +26,9 @@ struct TendonPartStep {
   double rest_at(const TendonLaw& law, double tension) const;
 };
 
-/// The condition of a guide for small changes of the parts before and behind it, [0] and [1]: the sum of by_length
-/// times the change of the length, and of by_rest times that of the rest length with all slips, is zero. Its derivative
-/// by the guide's own slip is 1.
+/// The linearised condition of a guide, for small changes of the parts before ([0]) and behind it ([1]):
+///   sum over both parts of by_length dL + by_rest dL0 = 0,
+/// with the part's length L, and its rest length L0 with all slips. The derivative by the guide's own slip is 1.
 struct SlipRow {
   bool slips = false;  ///< false: the guide's slip is zero instead
   double by_length[2] = {0, 0}, by_rest[2] = {0, 0};

@@ -77,8 +77,8 @@ RotorStep Actuators::rotor_step(const Actuator& actuator, const ActuatorState& s
   const double offset = -(rate / (scheme.beta * h) + (0.5 / scheme.beta - 1) * acceleration);
   out.rate_offset = rate + h * ((1 - scheme.gamma) * acceleration + scheme.gamma * offset);
   out.rate_slope = h * scheme.gamma * slope;
-  // The balance holds at the end of the step. In the Hilber-Hughes-Taylor family the accelerations belong to an earlier
-  // instant. So inertia takes the mean of Wood, Bossak and Zienkiewicz.
+  // The balance of a rotor holds at the end of the step. In the Hilber-Hughes-Taylor family the scheme's accelerations
+  // belong to an earlier instant. So inertia uses the weighted mean of both, as Wood, Bossak and Zienkiewicz have it.
   const double weight = 1 / configuration_.effort_weight();
   out.acceleration_offset = weight * offset + (1 - weight) * acceleration;
   out.acceleration_slope = weight * slope;

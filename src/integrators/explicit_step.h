@@ -27,8 +27,8 @@ class ExplicitStep {
   ExplicitStep(const Model& model, const Scheme& scheme);
 
   /// Advances the state by a step [s]. Returns why it cannot, and leaves the state as it was then: numbers are no
-  /// longer finite, or a loop is at a dead point or opens. `reuses`: a step may begin with what the last one knew at
-  /// its end. If not, a run that continues from a restored state is the same bit for bit.
+  /// longer finite, or a loop is at a dead point or opens. `reuses`: the step may use accelerations that the last step
+  /// computed at its end. Without it, a run that continues from a restored state has the same bits.
   StepResult::Reason advance(State& state, double step, bool reuses);
 
  private:

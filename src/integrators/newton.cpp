@@ -164,8 +164,8 @@ void NewtonIteration::learn(Progress& progress) {
   }
 }
 
-/// The ratio of two updates shows the contraction by kept factors. Exceptions are the first update with kept factors
-/// after new ones, whose size depends on the new factors, and round-off.
+/// The ratio of two updates shows how fast kept factors converge. Two ratios do not show it: that of updates of the
+/// size of round-off, and that of the first update with kept factors to the update before, which had new factors.
 bool NewtonIteration::renews_factors(const Progress& progress) const {
   UpdateOutlook update;
   update.norm = progress.norm;
@@ -177,8 +177,8 @@ bool NewtonIteration::renews_factors(const Progress& progress) const {
 }
 
 /// Whether the residual after an update is as small as expected. Called after the evaluation that follows an update.
-/// The residual shows what earlier solves could not know, such as a touched stop. It also shows what updates do not:
-/// that the last one brought a point into contact.
+/// Only the residual shows that the last update brought a point into contact, or that a stop was touched, which
+/// earlier solves could not know.
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
   if (progress.iteration > 0)
     return progress.residual == 0 || progress.norm <= kStagnation ||

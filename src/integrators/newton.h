@@ -64,7 +64,7 @@ class NewtonIteration {
     int age = 0;                // number of solves since then that ended after one update
     bool is_known = false;
   };
-  /// The contraction by kept factors in the third update of a solve, which shows the error that the second one left.
+  /// How much the third update of a solve is smaller than the second one, with kept factors.
   struct KeptContraction {
     double contraction = 1;
     int age = 0;  // number of solves since then with the same kind of start

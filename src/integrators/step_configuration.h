@@ -88,8 +88,8 @@ class StepConfiguration {
   /// Whether forces in the balance count as means over the step. In the Newmark family they are forces at the end of
   /// the step, and a mean needs those of the step before, too. In the first step, they count as means.
   bool forces_are_means() const { return scheme_.is_incremental() || state_->history.count == 0; }
-  /// Factor of efforts in the rows of coordinates. Efforts are reactions, which schemes that interpolate forces in time
-  /// extrapolate to the end of the step.
+  /// Factor of efforts in the rows of coordinates. It is not 1 in schemes that interpolate forces in time: there the
+  /// balance holds between both ends of the step, and efforts are extrapolated to the end.
   double effort_weight() const;
 
   // ---- joints over the step

@@ -18,8 +18,8 @@ inline double applied_effort(const Coordinate& coordinate, double commanded, dou
 
 /// The value of a function of time in a step.
 struct StepForce {
-  /// Value in the balance. Conserving schemes: the mean over the step. Newmark family: a value for which the impulse
-  /// over all steps is exact.
+  /// The value that the balance uses. Conserving schemes: the mean over the step. Newmark family: values whose sum over
+  /// all steps gives the exact impulse.
   double acting = 0;
   double mean = 0;    ///< over the step
   double at_end = 0;  ///< value at the end of the step; in conserving schemes the mean

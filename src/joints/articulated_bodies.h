@@ -50,8 +50,8 @@ class ArticulatedBodies {
     PaddedMatrix3 rotary;  // in the node's frame
     PaddedMatrix3 rotation;
     Padded3 position;
-    PaddedSpatial velocity, bias, acceleration;  // bias: the force that the articulated body needs if its node is not
-                                                 // accelerated
+    PaddedSpatial velocity, bias, acceleration;  // bias: the force at the node that keeps its acceleration zero
+                                                 // (Featherstone's bias force of the articulated body)
     PaddedInertia inertia;                       // of the articulated body
   };
   struct Link {

@@ -162,8 +162,8 @@ class RotorBalance {
   const CoordinateStep& link_;
 };
 
-/// The action with Coulomb's law: the staircase of StickSlip in one unknown. The signs of the balance at its two
-/// vertical parts tell the branch directly.
+/// The action with Coulomb's law: StickSlip's law in one unknown. Its graph has two vertical parts; the signs of the
+/// balance there tell on which part of the graph the solution is.
 MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor, double guess) {
   assert(rotor.rests || rotor.rate_slope != 0);
   const double rest = rotor.rests ? 0 : -rotor.rate_offset / rotor.rate_slope;

@@ -2,8 +2,8 @@
 /// Efforts of controllers (servos) over a step. (docs/notes/drives.md)
 ///
 /// The demand of a continuous controller is affine in the increment of the measured quantity, so its coefficients are
-/// known at the beginning of the step. It is the demand for means over the step, plus two terms of second order that
-/// stabilise high gains. Without these, the mid-point rule would let the error alternate for ever if gains are high.
+/// known at the beginning of the step. It is the control law for means over the step, plus two terms of second order.
+/// With high gains and without these terms, the mid-point rule would let the error change its sign in each step.
 /// With the increment s of the error, its moving average a, and the rate v of the measured quantity, the terms are
 ///   proportional [(s - a) stiffness - (v_1 - v_0)/h inertance]   with a_1 = a_0 + forgetting (s - a_0),
 /// whose coefficients are those of a NumericalDissipation of second order, and a damper against v with the three parts

@@ -75,11 +75,11 @@ struct ForcePieces {
   std::size_t group_nodes() const;
 };
 
-/// A tangent that consists of pieces. It is the sum of their blocks, and of left inner^-1 right: motions x determine
-/// the auxiliary variables t of all groups by inner t = right x, and these the forces left t. `inner` couples each
-/// group with its neighbours only. Nodes are listed by groups, one group after the other.
+/// A tangent that consists of pieces: the sum of their blocks, plus left inner^-1 right. That is, motions x determine
+/// auxiliary variables t by inner t = right x, and t determines the forces left t. Each group has its own variables;
+/// `inner` couples a group with its two neighbours only. Nodes are listed by groups, one group after the other.
 struct PieceTangent {
-  Eigen::Map<Eigen::MatrixXd> blocks{nullptr, 12, 0};  ///< 12 x 12 per piece, side by side; those of node -1 count not
+  Eigen::Map<Eigen::MatrixXd> blocks{nullptr, 12, 0};  ///< 12 x 12 per piece, side by side; node -1: not used
   Eigen::Map<Eigen::MatrixXd> left{nullptr, 0, 0};     ///< 6 x rank per node of each group, one below the other
   Eigen::Map<Eigen::MatrixXd> right{nullptr, 0, 0};    ///< rank x 6 per node of each group, side by side
   /// rank x 3 rank per group, side by side: its rows, for the variables of the group before, its own, that behind.

@@ -361,7 +361,7 @@ struct Simulation::Implementation {
     set_state(other);
   }
 
-  /// Sets a meaningless state of a mesh with these halvings, see halving_flaw().
+  /// Takes the mesh with these halvings; the state's numbers mean nothing until a state is restored: halving_flaw().
   void take_mesh(const std::vector<HalvedElement>& halved) {
     State other = *initial;
     other.halved = halved;

@@ -92,9 +92,9 @@ class Simulation {
 
   double time() const;       ///< [s]
   double step_size() const;  ///< [s]
-  /// Sets the step size from the next step on, also in scene() [s]. The motion continues with all conserved quantities.
-  /// Constants that a scheme derived from its first step size, such as numerical dissipation, stay. Snapshots do not
-  /// contain the step size.
+  /// Sets the step size of the next steps, and of scene() [s]. The motion goes on: no energy or momentum changes.
+  /// Constants that a scheme computed from its first step size, such as numerical dissipation, do not change. Snapshots
+  /// do not contain the step size.
   /// @throws std::invalid_argument if it is not > 0 and at most 1e9, or does not divide the sample time of a servo.
   void set_step_size(double step);
   double tolerance() const;  ///< of Newton's method, see IntegratorDescription
