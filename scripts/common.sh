@@ -17,7 +17,7 @@ die() {
 clean_environment() {
   local own_ros=''
   [[ -n ${ROS_DISTRO:-} && -f $ros_prefix/$ROS_DISTRO/setup.sh ]] && own_ros=$ros_prefix/$ROS_DISTRO
-  export PATH=/usr/bin:/bin:/usr/sbin:/sbin LC_ALL=C.UTF-8
+  export PATH=/usr/bin:/bin:/usr/sbin:/sbin LC_ALL=C.UTF-8 PYTHONNOUSERSITE=1
   unset PYTHONPATH PYTHONHOME PYTHONSTARTUP VIRTUAL_ENV CONDA_PREFIX LD_LIBRARY_PATH LD_PRELOAD CPATH C_INCLUDE_PATH \
     CPLUS_INCLUDE_PATH LIBRARY_PATH CMAKE_PREFIX_PATH CMAKE_GENERATOR DESTDIR PKG_CONFIG_PATH ROS_PACKAGE_PATH ROS_ROOT \
     ROS_DISTRO ROS_IP ROS_NAMESPACE ROS_MASTER_URI CATKIN_SETUP_UTIL_ARGS BASH_ENV CDPATH
@@ -69,12 +69,13 @@ first_known() {
   die "the package archive has none of: $*"
 }
 
-# install_dependencies run|test: installs the packages of dependencies.txt that are missing, and nothing else.
+# install_dependencies run|test [LEFT_OUT...]: installs the packages of dependencies.txt that are missing, and nothing else.
+# Lines of a key in LEFT_OUT are left out.
 install_dependencies() {
   local purpose=$1 line words names name missing=() packages=()
   while read -ra words; do
     [[ ${words[0]:-} == \#---- && $purpose == run ]] && break
-    [[ -z ${words[0]:-} || ${words[0]} == \#* ]] && continue
+    [[ -z ${words[0]:-} || ${words[0]} == \#* || " ${*:2} " == *" ${words[1]} "* ]] && continue
     mapfile -t names < <(candidates "${words[@]}")
     is_installed "${names[@]}" || missing+=("${names[*]}")
   done <"$root/scripts/dependencies.txt"

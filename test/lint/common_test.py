@@ -37,11 +37,33 @@ class Common(unittest.TestCase):
             for distribution in "debian", "":  # Debian's ROS, which is in /usr; and none
                 self.assertEqual(run(commands, ROS_DISTRO=distribution, CMAKE_PREFIX_PATH=path), ["none none"])
 
+    def test_python_packages_of_the_user_are_hidden(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ask = "/usr/bin/python3 -c 'import site; print(site.ENABLE_USER_SITE)'"
+            self.assertEqual(run(ask, HOME=folder), ["True"])
+            self.assertEqual(run("build=%s/build; clean_environment; %s" % (folder, ask), HOME=folder), ["False"])
+
+    def test_lines_of_a_key_can_be_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "scripts"))
+            with open(os.path.join(folder, "scripts", "dependencies.txt"), "w", encoding="utf-8") as file:
+                file.write("# a comment\none|- one\nrviz|- rviz\n#----\nlast -\n")
+            commands = """
+                root=%s
+                is_installed() { echo "$1"; }
+                install_dependencies %s"""
+            self.assertEqual(run(commands % (folder, "run")), ["one", "rviz"])
+            self.assertEqual(run(commands % (folder, "run rviz")), ["one"])
+            self.assertEqual(run(commands % (folder, "test")), ["one", "rviz", "last"])
+
     def test_packages_that_do_for_a_line(self):
         self.assertEqual(run("candidates 'libroscpp-dev' roscpp"), ["libroscpp-dev"])
         self.assertEqual(run("candidates 'one|other|-' -"), ["one", "other", "-"])
         self.assertEqual(
             run("candidates 'libtf2-ros-dev' tf2_ros", ROS_DISTRO="noetic"), ["ros-noetic-tf2-ros", "libtf2-ros-dev"]
+        )
+        self.assertEqual(
+            run("candidates 'libtf2-ros-dev' tf2_ros", ROS_DISTRO="one"), ["ros-one-tf2-ros", "libtf2-ros-dev"]
         )
         self.assertEqual(run("candidates 'one|-' -", ROS_DISTRO="noetic"), ["one", "-"])
 
