@@ -134,7 +134,8 @@ class TriesOfARun {
 
   bool may_try(double steps) {
     const bool has_tries = static_cast<int>(run_.tries.size()) < plan_.request.most_tries;
-    const bool has_steps = static_cast<double>(run_.steps) + steps <= plan_.request.most_steps;
+    const double most = std::min(plan_.request.most_steps, plan_.request.most_refinement * own_.fewest_steps());
+    const bool has_steps = static_cast<double>(run_.steps) + steps <= most;
     if (!has_tries) run_.end = AccurateRun::End::OutOfTries;
     if (!has_steps) run_.end = AccurateRun::End::OutOfSteps;
     return has_tries && has_steps;
@@ -231,7 +232,7 @@ const char* to_string(AccurateRun::End end) {
     case AccurateRun::End::OutOfTries:
       return "the largest number of tries is reached";
     case AccurateRun::End::OutOfSteps:
-      return "the largest number of steps is reached";
+      return "more steps are needed than a search may have";
   }
   return "";
 }
@@ -239,8 +240,11 @@ const char* to_string(AccurateRun::End end) {
 std::string shortcoming(const AccurateRun& run, double accuracy, double more) {
   const double estimate = run.estimate() + more;
   const std::string reached = std::isnan(estimate) ? "unknown" : fmt::format("{:.2g}", estimate);
-  return fmt::format("the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps", accuracy,
-                     to_string(run.end), reached, run.tries.size(), run.steps);
+  std::string text = fmt::format("the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps",
+                                 accuracy, to_string(run.end), reached, run.tries.size(), run.steps);
+  if (!run.tries.empty())
+    text += fmt::format("; the last try had {} steps of {}", run.tries.back().steps, run.scheme());
+  return text;
 }
 
 }  // namespace flexarm

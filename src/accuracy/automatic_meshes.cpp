@@ -27,7 +27,7 @@ void choose(TrialRuns& trials, double accuracy, const MeshFreedom& freedom, Auto
   }
   RunSettings settings = out.settings;
   settings.step = steps.settings.step;
-  const double scale = steps.runs.back()->motion.largest_displacement();
+  const double scale = steps.runs.back()->length_of_errors();
   const MeshErrors errors = measure_meshes(trials, settings, freedom, kRest * accuracy * scale);
   out.shortcoming = errors.shortcoming;
   for (const std::vector<MeshError>& beam : errors.beams)

@@ -48,9 +48,6 @@ constexpr int kMostFailures = 8;
 /// error of the velocity, which lasts to the end. Since their signs differ, all these errors together make this share
 /// of the requested accuracy.
 constexpr double kRemainderShare = 0.1;
-/// Points that move by less than this part of the model's length scale are at rest: their motion is round-off, or a
-/// remainder of the start.
-constexpr double kAtRest = 1e-6;
 /// An error is known once its estimate is below this.
 constexpr double kKnown = 0.1;
 /// Time of an evaluation of an explicit scheme over that of an iteration of Newton's method. (accuracy.md 3)
@@ -124,7 +121,7 @@ void SchemeTries::set_steps() {
 /// The order that is assumed for an estimate. `difference`: between the last try and the one before, relative.
 double SchemeTries::supposed_order(double difference) const {
   if (scheme_.order <= kCommonOrder) return scheme_.order;
-  if (std::isnan(difference_)) return kCommonOrder;
+  if (std::isnan(difference_) || difference == 0 || difference_ == 0) return kCommonOrder;
   const double seen = std::log(difference_ / difference) / std::log(planned_before_ / planned_earlier_);
   return std::clamp(seen, 1.0, static_cast<double>(scheme_.order));
 }
@@ -176,8 +173,7 @@ double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
 }
 
 bool SchemeTries::judge(AccurateRun& run) {
-  run.scale = plan_.request.scale.value_or(
-      std::max(run.motion.largest_displacement(), kAtRest * model_of(simulation_).length_scale));
+  run.scale = plan_.request.scale.value_or(length_of_errors(run.motion, model_of(simulation_).length_scale));
   if (is_astray()) return false;
   const double last = estimate_;
   const bool is_compared = judged_++ > 0;

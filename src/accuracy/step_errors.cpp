@@ -99,7 +99,7 @@ StepErrors measure_steps(TrialRuns& trials, RunSettings settings, double wanted,
     series.parts.push_back(parts);
     series.runs.push_back(&run);
     series.shortcoming = run.failure;
-    const double scale = run.is_complete() ? run.motion.largest_displacement() : 0;
+    const double scale = run.is_complete() ? run.length_of_errors() : 0;
     const double ratio = extrapolate(series, kRoundOff * scale);
     if (!series.has_errors()) continue;
     const double error = series.finest();

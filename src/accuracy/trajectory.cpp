@@ -9,6 +9,12 @@
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm {
+namespace {
+
+/// Relative to the mechanism's size. Points that move by less are at rest.
+constexpr double kAtRest = 1e-6;
+
+}  // namespace
 
 double largest_displacement(const Trajectory& trajectory) {
   double largest = 0;
@@ -73,6 +79,14 @@ double JudgedMotion::largest_displacement() const {
   double largest = 0;
   for (const Trajectory& point : points) largest = std::max(largest, flexarm::largest_displacement(point));
   return largest;
+}
+
+bool is_at_rest(const JudgedMotion& motion, double mechanism) {
+  return motion.largest_displacement() < kAtRest * mechanism;
+}
+
+double length_of_errors(const JudgedMotion& motion, double mechanism) {
+  return is_at_rest(motion, mechanism) ? mechanism : motion.largest_displacement();
 }
 
 double motion_error(const JudgedMotion& motion, const JudgedMotion& reference, double scale) {

@@ -82,6 +82,7 @@ void TrialRuns::step_through(Simulation& simulation, TrialRun& run, double most_
   const StepCommand command = commands_ ? commands_(simulation) : StepCommand();
   run.unknowns = simulation.degrees_of_freedom();
   run.motion = JudgedMotion(judged.size());
+  run.mechanism = model_of(simulation).length_scale;
   run.motion.add(judged.positions(simulation));
   const long stride = std::lround(times_.interval / run.settings.step);
   const double all_before = seconds_;
@@ -127,13 +128,6 @@ MotionDifference difference(const JudgedMotion& motion, const JudgedMotion& refe
       out.block<3, 1>(3 * i, p) = weight * (motion.points[p][i] - reference.points[p][i]);
     }
   return out;
-}
-
-bool moves(const JudgedMotion& motion) {
-  constexpr double kRoundOff = 1e-8;  // also of Newton's method
-  double farthest = 0;
-  for (const Trajectory& point : motion.points) farthest = std::max(farthest, point.front().norm());
-  return motion.largest_displacement() > kRoundOff * farthest;
 }
 
 double size(const MotionDifference& difference) {

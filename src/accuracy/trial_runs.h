@@ -28,7 +28,8 @@ JudgedTimes judged_times(double until, double step, int most);
 struct TrialRun {
   RunSettings settings;
   JudgedMotion motion;
-  double seconds = 0;  ///< processor time of all steps
+  double mechanism = 0;  ///< size of the mechanism [m]
+  double seconds = 0;    ///< processor time of all steps
   long steps = 0, iterations = 0;
   int halvings = 0;
   std::size_t unknowns = 0;
@@ -37,6 +38,8 @@ struct TrialRun {
   bool is_given_up = false;  ///< because it took too long
 
   bool is_complete() const { return failure.empty(); }
+  bool is_at_rest() const { return flexarm::is_at_rest(motion, mechanism); }
+  double length_of_errors() const { return flexarm::length_of_errors(motion, mechanism); }  ///< [m]
   /// Processor time per simulated second [-].
   double load(const JudgedTimes& times) const { return seconds / times.until(); }
 };
@@ -100,8 +103,6 @@ class TrialRuns {
 using MotionDifference = Eigen::MatrixXd;
 
 MotionDifference difference(const JudgedMotion& motion, const JudgedMotion& reference);
-/// Whether points move by more than the round-off of their positions.
-bool moves(const JudgedMotion& motion);
 /// The norm of the worst point's column [m].
 double size(const MotionDifference& difference);
 

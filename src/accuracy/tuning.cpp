@@ -113,7 +113,7 @@ class Search {
 };
 
 double Search::error(const TrialRun& run) const {
-  return motion_error(run.motion, reference_->motion, reference_->motion.largest_displacement());
+  return motion_error(run.motion, reference_->motion, reference_->length_of_errors());
 }
 
 bool Search::is_good(const TrialRun& run) const {
@@ -155,8 +155,8 @@ void Search::measure(double accuracy) {
   }
   const StepErrors pilot = measure_steps(trials_, settings, std::max(kPilotError, accuracy), most_seconds());
   if (!pilot.has_errors()) throw SearchEnded("no run was completed: " + pilot.shortcoming);
-  const double scale = pilot.runs.back()->motion.largest_displacement();
-  if (!moves(pilot.runs.back()->motion)) throw SearchEnded("no probe or tip moves, so that no error can be measured");
+  const double scale = pilot.runs.back()->length_of_errors();
+  if (pilot.runs.back()->is_at_rest()) throw SearchEnded("no probe or tip moves, so that no error can be measured");
   settings.step = pilot.settings.step;
   progress_(0.2, "meshes");
   const MeshErrors mesh_errors = measure_meshes(trials_, settings, meshes, kReferenceShare * accuracy * scale);
@@ -336,7 +336,7 @@ TuningResult Search::result(const std::string& ended) {
     out.reference_error = reference_error_;
   } else {
     reference_ = finest();
-    if (reference_ && !moves(reference_->motion)) reference_ = nullptr;
+    if (reference_ && reference_->is_at_rest()) reference_ = nullptr;
   }
   const TrialRun* chosen = reference_ ? best() : nullptr;
   out.is_met = chosen != nullptr;
@@ -353,7 +353,7 @@ TuningResult Search::result(const std::string& ended) {
     if (&run == chosen) out.best = out.runs.size();
     out.runs.push_back(std::move(row));
   }
-  if (reference_) out.scale = reference_->motion.largest_displacement();
+  if (reference_) out.scale = reference_->length_of_errors();
   if (chosen) out.estimate = pool_.predicted_error(chosen->settings, trials_.times());
   out.shortcoming = fmt::format("{}", fmt::join(shortcomings_, "; "));
   return out;

@@ -50,9 +50,9 @@ struct ChosenMeshes {
 ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation) {
   if (!arguments.resume.empty() || !arguments.checkpoint.empty()) return {accuracy};
   const scene::SceneDescription scene = simulation.scene();
-  ProgressBar bar(0, 1, !arguments.quiet);
+  ProgressBar bar(0, 1, !arguments.quiet, true);
   TrialRuns trials(scene, {(arguments.until - simulation.time()) / kJudgedTimes, kJudgedTimes}, {}, {}, [&] {
-    bar.show(0, "meshes");
+    bar.show(0, fmt::format("of run {} to choose meshes", trials.all().size() + 1));
     return interruption() == 0;
   });
   const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * accuracy);
@@ -83,11 +83,11 @@ bool is_explicit(const Simulation& simulation) {
 class TryOutput : public RunWatcher {
  public:
   TryOutput(const SimulateArguments& arguments, Run& run, double begin)
-      : arguments_(arguments), run_(run), progress_(begin, arguments.until, !arguments.quiet) {}
+      : arguments_(arguments), run_(run), progress_(begin, arguments.until, !arguments.quiet, true) {}
 
   void begin(const Simulation& simulation, long steps, double estimate) override {
-    label_ = std::isnan(estimate) ? fmt::format("{} steps", steps)
-                                  : fmt::format("{} steps, error about {:.1e}", steps, estimate);
+    label_ = fmt::format("of try {}: {} steps of {}", ++tries_, steps, simulation.scheme());
+    if (!std::isnan(estimate)) label_ += fmt::format(", error about {:.1e}", estimate);
     output_.reset();  // before run_.summary is replaced, since the writer updates it
     run_.summary = RunSummary(simulation);
     output_ = open_output(arguments_, simulation, run_.summary);
@@ -126,6 +126,7 @@ class TryOutput : public RunWatcher {
   Run& run_;
   ProgressBar progress_;
   std::string label_;
+  int tries_ = 0;
   std::unique_ptr<ResultWriter> output_;
   std::optional<StepResult> last_;  // kept until its error estimate is known
 };
@@ -164,12 +165,11 @@ void check(const SimulateArguments& arguments) {
     throw InputError("flexarm: --checkpoint-every cannot be used with an accuracy: only the final state can be saved");
 }
 
-/// The length by which errors are divided. If points hardly move, it is not their largest displacement.
+/// The length by which errors are divided. If points are at rest, it is not their largest displacement.
 std::string scale_text(const AccurateRun& run) {
   const double way = run.motion.largest_displacement();
   if (way >= run.scale) return fmt::format("{:.3g} m", run.scale);
-  return fmt::format("{:.3g} m (a millionth of the mechanism's size, since points move by only {:.2g} m)", run.scale,
-                     way);
+  return fmt::format("{:.3g} m (the mechanism's size, since points move by only {:.2g} m)", run.scale, way);
 }
 
 }  // namespace

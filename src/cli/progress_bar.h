@@ -1,15 +1,17 @@
 #pragma once
-/// A progress bar on a terminal.
+/// Shows what takes long on standard error: a progress bar on a terminal, or lines of text.
 
 #include <chrono>
 #include <string>
 
 namespace flexarm::cli {
 
-/// Draws on standard error; draws nothing if standard error is not a terminal.
+/// If standard error is not a terminal, there is no bar.
 class ProgressBar {
  public:
-  ProgressBar(double begin, double end, bool is_wanted);
+  /// `lines`: if there is no bar, writes a line after two seconds, and then each time when the time has doubled. For
+  /// what may take much longer than the user expects.
+  ProgressBar(double begin, double end, bool is_wanted, bool lines = false);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -20,9 +22,12 @@ class ProgressBar {
   void clear();
 
  private:
+  using Clock = std::chrono::steady_clock;
+  void write_line(const std::string& text);
+
   double begin_, end_;
-  bool is_visible_, is_drawn_ = false;
-  std::chrono::steady_clock::time_point next_;
+  bool is_visible_, is_drawn_ = false, has_lines_;
+  Clock::time_point start_, next_;
 };
 
 }  // namespace flexarm::cli

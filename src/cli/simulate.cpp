@@ -265,10 +265,9 @@ void add_time_and_accuracy(Command& command, SimulateArguments& arguments) {
   command.option("--until", arguments.until, "end time [s]").shows_default().check(check_non_negative);
   command.option("--step", arguments.options.step, "time step [s]").check(check_positive);
   command
-      .option(
-          "--accuracy", arguments.accuracy,
-          "chooses the steps for this error of the probes, relative to their largest displacement, or to a millionth "
-          "of the mechanism's size if that is more (the scene's)")
+      .option("--accuracy", arguments.accuracy,
+              "chooses the steps for this error of the probes, relative to their largest displacement, or to the "
+              "mechanism's size if they rest (the scene's)")
       .check(check_part);
   command.option("--scheme", arguments.options.scheme, "integration scheme").choices(scheme_choices());
   command.option("--tolerance", arguments.options.tolerance, "of Newton's method").check(check_tolerance);

@@ -69,7 +69,7 @@ void check(const TuneArguments& arguments) {
 }
 
 TuningResult search(const TuneArguments& arguments, TrialRuns& trials) {
-  ProgressBar bar(0, 1, true);
+  ProgressBar bar(0, 1, true, true);
   TuningGoal goal;
   goal.accuracy = arguments.accuracy;
   if (arguments.real_time) goal.load = 1 / (*arguments.real_time * arguments.margin);

@@ -76,8 +76,8 @@ accuracy: largest estimated error of the positions of probes (of tips if there a
   square over time, relative to `scale`. It is the error of time integration, without that of the meshes.
 intervals: number of equal intervals; errors are measured and rows recorded at their ends.
 record: patterns of columns, as in run().
-scale: length to which errors are relative [m]; None: the largest displacement of the points, at least a millionth of
-  the mechanism's size.
+scale: length to which errors are relative [m]; None: the largest displacement of the points, or the mechanism's size
+  if they move by less than a millionth of it.
 frame: the link in whose frame errors are measured; '': the world.
 most_tries, most_steps: limits after which it gives up.
 

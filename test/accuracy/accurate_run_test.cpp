@@ -274,6 +274,14 @@ TEST(AccurateRun, EndsWithWhatWasReached) {
   EXPECT_EQ(run.end, AccurateRun::End::OutOfSteps);
   EXPECT_LE(run.steps, 500);
   EXPECT_LT(run.estimate(), 1);
+  // The same limit relative to the steps of the first try, which has one in each of the hundred intervals.
+  request.most_steps = 1e8;
+  request.most_refinement = 5;
+  Simulation other(b.scene);
+  const AccurateRun relative = run_to_accuracy(other, request, nobody);
+  EXPECT_EQ(relative.end, AccurateRun::End::OutOfSteps);
+  EXPECT_LE(relative.steps, 500);
+  EXPECT_NE(shortcoming(relative, 1e-6).find("more steps are needed"), std::string::npos);
 }
 
 TEST(AccurateRun, RefusesWhatCannotBe) {

@@ -52,8 +52,8 @@ TEST(SimulateAccuracy, NamesTheSchemeThatRan) {
   expect_contains(outcome.output, "after " + found[1].str() + " steps (" + found[2].str() + ", ");
 }
 
-// The rod of one metre turns freely by 1e-8 rad only. Errors are then relative to a larger length than the motion, and
-// the report says so.
+// The rod of one metre turns freely by 1e-8 rad only. Errors are then relative to the mechanism's size, and the report
+// says so.
 TEST(SimulateAccuracy, SaysWhereErrorsAreNotRelativeToTheWay) {
   const auto run = [](const std::string& velocity) {
     return shell("flexarm simulate --until 1 --accuracy 1e-3 " + scene_file(R"(<robot name="r"> <link name="world"/>
@@ -66,7 +66,7 @@ TEST(SimulateAccuracy, SaysWhereErrorsAreNotRelativeToTheWay) {
   };
   const Outcome rest = run("1e-8"), motion = run("1e-2");
   EXPECT_EQ(rest.status, 0) << rest.errors;
-  expect_contains(rest.output, " m (a millionth of the mechanism's size, since points move by only 1e-08 m); ");
+  expect_contains(rest.output, " m (the mechanism's size, since points move by only 1e-08 m); ");
   EXPECT_EQ(motion.status, 0) << motion.errors;
   expect_contains(motion.output, ", relative to 0.01 m; ");
 }

@@ -17,12 +17,14 @@ struct AccuracyRequest {
   double accuracy;      ///< upper bound of motion_error(), in (0, 1)
   double until;         ///< end time of the run [s]
   int intervals = 100;  ///< number of equal intervals; positions are compared at their ends
-  /// Length by which errors are divided [m]. Empty: the largest displacement of a judged point, but at least 1e-6 of
-  /// the size of the mechanism.
+  /// Length by which errors are divided [m]. Empty: length_of_errors().
   std::optional<double> scale = {};
   std::string frame = {};  ///< link in whose frame positions are compared, see JudgedPoints
   int most_tries = 24;
   double most_steps = 1e8;  ///< limit for the sum of the steps of all tries
+  /// The same limit relative to the steps of the first try. Errors of second order are then a billionth of those of the
+  /// first try.
+  double most_refinement = 1e5;
 };
 
 /// Observes the tries of a run; each try begins at the same state.

@@ -55,6 +55,13 @@ struct JudgedMotion {
   double largest_displacement() const;
 };
 
+/// Whether all judged points move by less than a millionth of the mechanism's size [m]. That is round-off, or what an
+/// equilibrium has left.
+bool is_at_rest(const JudgedMotion& motion, double mechanism);
+/// The length by which errors of a motion are divided [m]: the largest displacement of a judged point. Of points at
+/// rest there is no way of which a part could be asked for, so it is the mechanism's size. (docs/notes/accuracy.md 1)
+double length_of_errors(const JudgedMotion& motion, double mechanism);
+
 /// The largest trajectory_distance() of any point [m], divided by `scale` [m].
 /// @throws std::invalid_argument unless both motions have the same points and times, and the scale is positive.
 double motion_error(const JudgedMotion& motion, const JudgedMotion& reference, double scale);
