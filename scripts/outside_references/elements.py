@@ -29,6 +29,19 @@ class Element:
     def act(self, s, efforts, rates):
         """Adds to `efforts` on the coordinates, and writes the `rates` of the own states, which are s.own(self)."""
 
+    def longest_step(self):
+        """The longest step in which no zero of a switch is overlooked [s]."""
+        return math.inf
+
+    def settle(self, s):
+        """Chooses the signs at the start."""
+        self.held = [1 if value > 0 else -1 for value in self.switches(s)]
+
+    def flip(self, which, _s):
+        """Passes the zero of a switch."""
+        self.held = list(self.held)
+        self.held[which] *= -1
+
     def sample(self, s):
         """Takes a sample, at the element's own sampling times."""
 

@@ -27,6 +27,26 @@ def number(element, name, default=None):
     return default if element is None or element.get(name) is None else float(element.get(name))
 
 
+def set_free(root, floating):
+    """Replaces a floating joint by two slides and a hinge, which are the same in the plane z = 0."""
+    name, child = floating.get("name"), floating.find("child").get("link")
+    if floating.find("axis") is not None:
+        raise Refused(f"joint '{name}': an axis")
+    root.remove(floating)
+    parent, origin = floating.find("parent").get("link"), floating.find("origin")
+    for kind, part, axis in (("prismatic", "x", "1 0 0"), ("prismatic", "y", "0 1 0"), ("continuous", "turn", "0 0 1")):
+        to = child if part == "turn" else f"{child}/{part}"
+        if to != child:
+            ElementTree.SubElement(root, "link", name=to)
+        joint = ElementTree.SubElement(root, "joint", name=f"{name}/{part}", type=kind)
+        ElementTree.SubElement(joint, "parent", link=parent)
+        ElementTree.SubElement(joint, "child", link=to)
+        ElementTree.SubElement(joint, "axis", xyz=axis)
+        if part == "x" and origin is not None:
+            joint.append(origin)
+        parent = to
+
+
 class Joint:
     """`kind`: turn, slide, rise (along the normal) or screw. `sign`: of a turn. `direction`: of a slide."""
 
@@ -99,10 +119,13 @@ class Mechanism:
 
     def __init__(self, text):
         root = ElementTree.fromstring(text)
-        known = {"link", "joint", "loop_joint", "drive", "servo", "spring", "simulation", "parameter"}
+        known = {"link", "joint", "loop_joint", "drive", "servo", "spring", "simulation", "parameter", "ground", "contact"}
         for child in root:
             if child.tag not in known:
                 raise Refused(f"<{child.tag}>")
+        for element in root.findall("joint"):
+            if element.get("type") == "floating" and element.find("couple") is None:
+                set_free(root, element)
         elements = root.findall("joint")
         axes = [j.find("axis") for j in elements if j.get("type") in ("revolute", "continuous", "floating")]
         self.plane = Plane(numbers(axes[0].get("xyz")) if axes and axes[0] is not None else np.array([0, 0, 1.0]))

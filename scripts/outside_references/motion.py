@@ -14,8 +14,9 @@ except ImportError:  # before scipy 1.4: of order 5 instead of 8, so with more s
     from scipy.integrate import RK45 as RungeKutta
 
 import time_functions
+from contacts import contacts
 from elements import Coulomb, Load, Motor, Passive, PointSpring, Stop
-from mechanism import Mechanism, Refused, number
+from mechanism import Mechanism, Refused, number, numbers
 
 TOLERANCE = 1e-12
 PARTS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0)  # of a step: places where the signs of switches are checked
@@ -26,7 +27,7 @@ class Snapshot:
     """What elements see: time, coordinates, rates, and their own states."""
 
     def __init__(self, motion, t, y):
-        self.t, self.piece, self.slices = t, motion.piece, motion.slices
+        self.t, self.piece, self.slices, self.motion = t, motion.piece, motion.slices, motion
         self.middle = 0.5 * (motion.piece[0] + motion.piece[1])
         begin, end = motion.piece
         gap = SAME * max(1.0, end)
@@ -85,6 +86,9 @@ class Motion:
     def _read_start(self):
         m, q, v = self.mechanism, np.zeros(self.mechanism.n), np.zeros(self.mechanism.n)
         for entry in m.entries("initial"):
+            if entry.get("link") is not None:
+                self._read_velocity(entry, v)
+                continue
             if entry.get("joint") is None:
                 raise Refused("<initial> without a joint")
             q[m.index[entry.get("joint")]] = number(entry, "position", 0.0)
@@ -96,6 +100,18 @@ class Motion:
         self.q0 = self.T @ q[self.free] + c
         if any(gap > 1e-12 for gap in m.gaps(self.q0)):
             raise Refused(f"a loop that is open at the start: {m.gaps(self.q0)}")
+
+    def _read_velocity(self, entry, v):
+        """The velocity of a link that floats."""
+        m = self.mechanism
+        last = next((j for j in m.moving if j.child == entry.get("link") and j.name.endswith("/turn")), None)
+        if last is None:
+            raise Refused("the velocity of a link that does not float")
+        name = last.name[:-len("turn")]
+        linear, angular = (numbers(entry.get(key, "0 0 0")) for key in ("linear", "angular"))
+        v[m.index[name + "x"]], v[m.index[name + "y"]], v[m.index[last.name]] = linear[0], linear[1], angular[2]
+        if linear[2] or angular[0] or angular[1]:
+            raise Refused("a velocity out of the plane")
 
     def _read_elements(self):
         m, self.elements, self.frictions, self.armature = self.mechanism, [], [], np.zeros(self.mechanism.n)
@@ -116,6 +132,7 @@ class Motion:
                 self._read_passive(j, joint, by_joint["spring"].get(j), motor, mass[j][j] + rigid)
         q = self.q0
         self.elements += [PointSpring(m, e, q) for e in m.point_springs] + [Load(m, e) for e in m.entries("load")]
+        self.elements += contacts(m, self.step)
         self.slices, at = {}, 2 * len(self.free)
         for element in self.elements:
             self.slices[element] = slice(at, at + element.extras)
@@ -240,7 +257,7 @@ class Motion:
 
     def settle_signs(self, t, y):
         for element in self.elements:
-            element.held = [1 if value > 0 else -1 for value in element.switches(Snapshot(self, t, y))]
+            element.settle(Snapshot(self, t, y))
         for friction in self.frictions:
             rate = Snapshot(self, t, y).v[friction.j]
             friction.state = int(np.sign(rate))
@@ -263,8 +280,7 @@ class Motion:
         for element in self.elements:
             count = len(element.held)
             if which < count:
-                element.held = list(element.held)
-                element.held[which] *= -1
+                element.flip(which, Snapshot(self, t, y))
                 return y
             which -= count
         friction = self.frictions[which]
@@ -297,8 +313,10 @@ class Motion:
     # ---- integration
 
     def _solver(self, t, y, end, tolerance, step):
-        first = min(step, end - t) if step else None
-        return RungeKutta(self.derivative, t, y, end, rtol=tolerance, atol=tolerance, first_step=first)
+        longest = min([element.longest_step() for element in self.elements], default=math.inf)
+        first = min(step, end - t, longest) if step else None
+        return RungeKutta(self.derivative, t, y, end, rtol=tolerance, atol=tolerance, first_step=first,
+                          max_step=longest)
 
     def _exactly(self, t, y, end, tolerance):
         if end <= t:

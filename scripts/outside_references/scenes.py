@@ -330,9 +330,90 @@ def flexible(rng):
                                     "", "fixed", gravity=0.0)
 
 
+def ball(name, radius, mass, at=(0, 0)):
+    return (f'<link name="{name}"><inertial><mass value="{mass!r}"/><inertia ixx="{mass / 250!r}" iyy="{mass / 250!r}" '
+            f'izz="{mass / 250!r}" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="{at[0]!r} {at[1]!r} 0"/>'
+            f'<geometry><sphere radius="{radius!r}"/></geometry></collision></link>\n')
+
+
+def free(name, x, y):
+    return (f'<joint name="{name}_free" type="floating"><parent link="world"/><child link="{name}"/>'
+            f'<origin xyz="{x!r} {y!r} 0"/></joint>\n')
+
+
+def ground(angle=0.0, offset=0.0):
+    """A half-space whose surface is turned from the horizontal by this angle [rad]."""
+    return f'<ground name="floor" normal="{-math.sin(angle)!r} {math.cos(angle)!r} 0" offset="{offset!r}"/>\n'
+
+
+def contact(first, second, restitution, stiffness=None):
+    rest = "" if stiffness is None else f' stiffness="{stiffness!r}"'
+    return f'<contact first="{first}" second="{second}" restitution="{restitution!r}"{rest}/>\n'
+
+
+def thrown(name, vx=0.0, vy=0.0, turn=0.0):
+    return f'<initial link="{name}" linear="{vx!r} {vy!r} 0" angular="0 0 {turn!r}"/>\n'
+
+
+def contacts(rng):
+    """Hits of balls and boxes, of free bodies and of mechanisms. Stiffnesses are declared, except where steps are named."""
+    r = rng.uniform
+
+    def stiffness(mass):
+        """Such that a hit lasts 4 to 20 ms."""
+        return mass * (math.pi / r(0.004, 0.02)) ** 2
+
+    for i in range(14):
+        radius, mass, restitution = r(0.03, 0.12), math.exp(r(-2, 2)), r(0.2, 0.95)
+        yield f"ball {i}, restitution {restitution:.2f}", r(0.5, 1.5), scene(
+            ground() + ball("b", radius, mass) + free("b", 0.0, radius + r(0.2, 0.8))
+            + contact("b", "floor", restitution, stiffness(mass)), thrown("b", r(-0.5, 0.5), r(-1, 0.5)) + probe("b"))
+    for restitution in (0.5, 0.8):
+        yield f"ball of ten steps, restitution {restitution}", 1.0, scene(
+            ground() + ball("b", 0.06, 0.4) + free("b", 0.0, r(0.3, 0.6)) + contact("b", "floor", restitution),
+            probe("b"))
+    for i in range(5):
+        radius, mass = r(0.05, 0.1), math.exp(r(-1, 1))
+        yield f"ball on a slope {i}", 0.9, scene(
+            ground(r(-0.5, 0.5)) + ball("b", radius, mass) + free("b", 0.0, radius + r(0.3, 0.6))
+            + contact("b", "floor", r(0.4, 0.85), stiffness(mass)), thrown("b", r(-1, 1)) + probe("b"))
+    for i in range(6):
+        mass, angle = r(0.3, 1.5), r(0.4, 1.0)
+        yield f"pendulum on a wall {i}", 1.5, scene(
+            '<ground name="floor" normal="1 0 0" offset="-0.05"/>\n' + ball("b", 0.05, mass, (0, -0.5))
+            .replace("<inertial>", '<inertial><origin xyz="0 -0.5 0"/>')
+            + joint("h", "continuous", "world", "b") + contact("b", "floor", r(0.3, 0.9), stiffness(mass)),
+            initial("h", angle) + probe("b", "0 -0.5 0"))
+    for i in range(3):
+        yield f"double pendulum on a wall {i}", 0.9, scene(
+            '<ground name="floor" normal="1 0 0" offset="-0.1"/>\n' + link("a", 1.0, (0, -0.3), 0.04)
+            + joint("h", "continuous", "world", "a") + ball("b", 0.05, 0.7, (0, -0.4))
+            .replace("<inertial>", '<inertial><origin xyz="0 -0.3 0"/>')
+            + joint("k", "continuous", "a", "b", (0, -0.6)) + contact("b", "floor", r(0.3, 0.8), stiffness(0.7)),
+            initial("h", r(0.5, 0.8)) + initial("k", r(-0.2, 0.3)) + probe("b", "0 -0.4 0"))
+    for i in range(4):
+        m, n = math.exp(r(-1, 1)), math.exp(r(-1, 1))
+        yield f"two balls {i}", 0.6, scene(
+            ball("a", 0.08, m) + free("a", 0.0, 0.0) + ball("b", 0.06, n) + free("b", 0.5, r(-0.08, 0.08))
+            + contact("a", "b", r(0.3, 0.9), stiffness(m * n / (m + n))),
+            thrown("a", r(1, 2)) + thrown("b", -r(0.5, 1.5)) + probe("a") + probe("b"), 0.0)
+    for i in range(2):
+        yield f"ball on a ball {i}", 0.55, scene(
+            ground() + ball("a", 0.08, 1.0) + free("a", 0.0, r(0.2, 0.4)) + ball("b", 0.05, 0.3) + free("b", 0.0, 0.6)
+            + contact("a", "floor", r(0.5, 0.9), stiffness(1.0)) + contact("b", "a", r(0.5, 0.9), stiffness(0.3)),
+            probe("a") + probe("b"))
+    for i in range(4):
+        tilt, spin = (0.0, 0.0) if i == 0 else (r(0.1, 0.6), r(-2, 2))
+        yield f"box {i}", 0.6, scene(
+            ground(tilt) + '<link name="b"><inertial><mass value="0.8"/><inertia ixx="1e-3" iyy="1e-3" izz="3e-3" '
+            'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.2 0.12 0.1"/></geometry></collision>'
+            '</link>\n' + free("b", 0.0, r(0.25, 0.4)) + contact("b", "floor", r(0.3, 0.8), stiffness(0.8) / 4),
+            thrown("b", 0.0, 0.0, spin) + probe("b", "0.1 0.06 0"))
+
+
 def all_scenes():
     found = []
-    groups = (forces, stops, frictions, drives, servos, loops, motions, couplings, smooth, flexible)
+    groups = (forces, stops, frictions, drives, servos, loops, motions, couplings, smooth, flexible, contacts)
     for seed, group in enumerate(groups):
         for name, until, text in group(random.Random(20261126 + seed)):
             found.append(Scene(group.__name__, name, group is not smooth, until, text, group is not flexible))

@@ -17,7 +17,7 @@ struct AccuracyCase {
   scene::SceneDescription scene;
   std::string commands;      ///< file of efforts; empty: none
   double until;              ///< [s]
-  bool is_cornered = false;  ///< has jumps, kinks, stops, dry friction, play or limits
+  bool is_cornered = false;  ///< has jumps, kinks, stops, contact, dry friction, play or limits
   int intervals = 100;       ///< between the times at which the error is measured
   std::optional<JudgedMotion> truth =
       {};                  ///< true motion from elsewhere than flexarm; empty: finer runs are the reference
@@ -82,8 +82,8 @@ std::vector<AccuracyCase> accuracy_cases(const std::string& folder, const std::s
 AccuracyReport measure_accuracy(const std::vector<AccuracyCase>& cases, const AccuracyScope& scope,
                                 const std::function<void(double, const std::string&)>& progress);
 
-/// Two lines, for smooth scenes and for scenes with corners: share of runs within their accuracy, worst ratio, median
-/// cost.
+/// Three lines, for scenes with corners, for those of them with contact, and for smooth scenes: share of runs within
+/// their accuracy, worst ratio, median cost.
 std::string accuracy_summary(const AccuracyReport& report);
 
 /// The tables. `picture`: file name of the plot in the same folder; empty: none.

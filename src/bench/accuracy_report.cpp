@@ -15,6 +15,9 @@ namespace {
 /// Targets for the share of runs with larger errors, for the largest ratio, and for the cost.
 constexpr double kShareAbove = 0.05, kLargestRatio = 3, kLargestCost = 1.5;
 
+/// The group of scripts/outside_references in which bodies hit each other. Its scenes are cornered.
+constexpr const char* kContacts = "contacts";
+
 std::string number(double value, const char* format) {
   return std::isfinite(value) ? fmt::vformat(format, fmt::format_args(fmt::make_format_args(value))) : "–";
 }
@@ -64,6 +67,15 @@ Summary summary_of(const AccuracyReport& report, bool is_cornered) {
   Summary summary;
   for (const AccuracyMeasurement& measurement : report.measurements)
     if (measurement.is_cornered == is_cornered)
+      for (const AccuracyOutcome& outcome : measurement.outcomes) summary.add(outcome);
+  return summary;
+}
+
+/// Summary of the scenes in which bodies hit each other.
+Summary summary_of_contacts(const AccuracyReport& report) {
+  Summary summary;
+  for (const AccuracyMeasurement& measurement : report.measurements)
+    if (measurement.group == kContacts)
       for (const AccuracyOutcome& outcome : measurement.outcomes) summary.add(outcome);
   return summary;
 }
@@ -129,7 +141,7 @@ std::string scenes_of(const AccuracyScope& scope) {
 
 constexpr const char* kIntroduction =
     R"( are run by `flexarm simulate --accuracy`, which chooses the steps for the accuracy, and the elements
-of beams with `elements="auto"`. *Cornered* scenes have jumps, kinks, stops, dry friction, play, motors and servos at
+of beams with `elements="auto"`. *Cornered* scenes have jumps, kinks, stops, contact, dry friction, play, motors and servos at
 their limits, or sampled servos; *smooth* ones have none of these.
 
 The true error is measured against a reference motion. For rigid mechanisms in a plane, it is not computed by flexarm,
@@ -149,7 +161,9 @@ of three in turns where two are compared; iterations are those of Newton's metho
 }  // namespace
 
 std::string accuracy_summary(const AccuracyReport& report) {
-  return target_line("Cornered", summary_of(report, true)) + target_line("Smooth", summary_of(report, false));
+  return target_line("Cornered", summary_of(report, true)) +
+         target_line("Of these with contact", summary_of_contacts(report)) +
+         target_line("Smooth", summary_of(report, false));
 }
 
 std::string to_markdown(const AccuracyReport& report, const std::string& picture) {

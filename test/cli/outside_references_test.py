@@ -8,6 +8,7 @@ outside_references_test.py [PROGRAM]
 import cmath
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -139,6 +140,37 @@ class ClosedForms(unittest.TestCase):
         np.testing.assert_allclose(points[:, 0, 0], cart + 0.8 * np.sin(angle), atol=CLOSE)
 
 
+class Contacts(unittest.TestCase):
+    def test_restitution_at_any_speed(self):
+        """Without weight, a hit at any speed, with any mass and stiffness, gives back the declared part of the speed."""
+        for speed, mass, stiffness, restitution in ((0.1, 1.0, 1e4, 0.5), (3.0, 0.2, 1e4, 0.2), (20.0, 5.0, 1e5, 0.9)):
+            text = scenes.scene(scenes.ground() + scenes.ball("b", 0.1, mass) + scenes.free("b", 0.0, 0.1 + 0.1 * speed)
+                                + scenes.contact("b", "floor", restitution, stiffness),
+                                scenes.thrown("b", 0.0, -speed) + scenes.probe("b"), 0.0)
+            times, points = run(text, 0.5, 200)
+            y = points[:, 0, 1]
+            self.assertAlmostEqual((y[-1] - y[-2]) / (times[-1] - times[-2]) / speed, restitution, delta=1e-8)
+
+    def test_elastic_balls_swap_momentum(self):
+        """Masses 1 and 3 at 1 and -2 m/s on one line, elastic: -3.5 and -0.5 m/s."""
+        text = scenes.scene(scenes.ball("a", 0.1, 1.0) + scenes.free("a", 0.0, 0.0) + scenes.ball("b", 0.1, 3.0)
+                            + scenes.free("b", 0.5, 0.0) + scenes.contact("a", "b", 1.0, 1e5),
+                            scenes.thrown("a", 1.0) + scenes.thrown("b", -2.0) + scenes.probe("a") + scenes.probe("b"), 0.0)
+        times, points = run(text, 0.3, 100)
+        speeds = (points[-1, :, 0] - points[-2, :, 0]) / (times[-1] - times[-2])
+        np.testing.assert_allclose(speeds, [-3.5, -0.5], atol=1e-8)
+
+    def test_rests_where_the_weight_is_carried(self):
+        """k x(p) x'(p) = m g for the hardened penetration x, and nothing moves sideways."""
+        text = scenes.scene(scenes.ground() + scenes.ball("b", 0.1, 1.0) + scenes.free("b", 0.0, 0.101)
+                            + scenes.contact("b", "floor", 0.1, 1e4), scenes.probe("b"))
+        _, points = run(text, 1.5, 10)
+        p, depth = 0.1 - points[-1, 0, 1], 0.01
+        room = 1 - (p / depth) ** 2
+        self.assertAlmostEqual(1e4 * p / room ** 2 * (1 + 3 * (p / depth) ** 2) / room ** 3, 9.81, delta=1e-6)
+        self.assertEqual(points[-1, 0, 0], 0.0)
+
+
 class OtherEquations(unittest.TestCase):
     def test_double_pendulum(self):
         """Compare with Lagrange's equations in absolute angles, measured from -y."""
@@ -191,10 +223,11 @@ class Program(unittest.TestCase):
                               check=False, universal_newlines=True)
 
     def test_there_are_enough_scenes(self):
-        """Each scene has a name of its own. At least 60 scenes have corners and an outside reference."""
+        """Each scene has a name of its own. At least 60 scenes have corners and an outside reference, 40 have contact."""
         found = scenes.all_scenes()
         self.assertEqual(len({(scene.group, scene.name) for scene in found}), len(found))
         self.assertGreaterEqual(sum(scene.is_cornered and scene.is_rigid for scene in found), 60)
+        self.assertGreaterEqual(sum(scene.group == "contacts" for scene in found), 40)
 
     def test_writes_what_is_chosen(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -211,6 +244,26 @@ class Program(unittest.TestCase):
                          ('axis xyz="0 0 1"/>', 'axis xyz="0 0 1"/><friction law="coulomb" coefficient="0.1"/>')):
             with self.assertRaises(Refused):
                 Motion(text.replace(old, new), 1.0)
+
+    def test_hits_keep_accuracies(self):
+        """A fast part of `flexarm bench accuracy`: scenes of hits, in which each accuracy must be kept."""
+        if len(PROGRAM) == 0:
+            self.skipTest("no program")
+        wanted = ("ball 0", "ball 3", "ball on a slope 1", "pendulum on a wall 0", "two balls 0")
+        chosen = [scene for scene in scenes.all_scenes()
+                  if scene.group == "contacts" and scene.name.split(",")[0] in wanted]
+        self.assertEqual(len(chosen), len(wanted))
+        for scene in chosen:
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "scene.urdf")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(scene.text)
+                done = self.script("--judge", path, "--until", repr(scene.until), "--accuracy", "1e-3", "1e-4",
+                                   "--program", PROGRAM[0])
+            ratios = re.findall(r"true error \S+, (\S+) times the requested one; accuracy \S+ requested", done.stdout)
+            self.assertEqual(len(ratios), 2, f"{scene.name}: {done.stdout} {done.stderr}")
+            for ratio in ratios:
+                self.assertLessEqual(float(ratio), 1.0, f"{scene.name}: {done.stdout}")
 
     def test_judges_a_scene(self):
         if len(PROGRAM) == 0:
