@@ -41,6 +41,8 @@ bool has_corners(const Model& model) {
     return c.limit || c.friction != 0 || c.friction_coefficient != 0;
   };
   return !model.actuators.empty() || !model.histories.empty() || !model.slide_lines.empty() ||
+         std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                     [](const auto& element) { return element->hits(); }) ||
          std::any_of(model.coordinates.begin(), model.coordinates.end(), of_coordinate);
 }
 
@@ -48,7 +50,7 @@ bool has_corners(const Model& model) {
 
 Corners::Corners(const Simulation& simulation) : may_come_(has_corners(model_of(simulation))) {
   const Model& model = model_of(simulation);
-  marks_.assign(2 * model.coordinates.size() + 4 * model.actuators.size() + 1, kUnknown);
+  marks_.assign(2 * model.coordinates.size() + 4 * model.actuators.size() + model.force_elements.size() + 1, kUnknown);
   last_marks_ = marks_;
   ways_.resize(model.coordinates.size() + model.actuators.size());
   begin(simulation);
@@ -117,6 +119,11 @@ void Corners::look(const Simulation& simulation) {
     *mark++ = gear_play > 0 ? side(state.actuators[a].angle - position, -gear_play, gear_play) : 0;
     const double spring_play = actuator.spring ? 0.5 * actuator.spring->elasticity.backlash : 0;
     *mark++ = spring_play > 0 ? side(position - actuator.spring->rest, -spring_play, spring_play) : 0;
+  }
+  const double* memory = state.force_memory.data();
+  for (const auto& element : model.force_elements) {
+    *mark++ = element->hits() && element->remembers(memory) ? 1 : 0;
+    memory += element->memory_size();
   }
   *mark++ = static_cast<int>(state.left_lines.size()) + kUnknown + 1;
 }

@@ -8,8 +8,8 @@
 namespace flexarm {
 
 /// Looks at a simulation's state after each step, and decides whether forces may have jumped within the step, or begun
-/// to change in another way. That happens at stops, dry friction, play and limits of motors, when a slider leaves its
-/// line, and in functions of time that jump. Allocates nothing after its construction.
+/// to change in another way. That happens at stops, where bodies touch, in dry friction, play and limits of motors,
+/// when a slider leaves its line, and in functions of time that jump. Allocates nothing after its construction.
 class Corners {
  public:
   explicit Corners(const Simulation& simulation);

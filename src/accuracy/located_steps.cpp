@@ -20,11 +20,17 @@ constexpr double kSlide = 1e-3;
 constexpr double kBeyond = 2e-3;
 /// Most repetitions of a step that should end at an event.
 constexpr int kMostLocations = 10;
+/// Most steps that end at events in a cell. Further events, as of a box that rattles on its corners, are stepped over.
+constexpr int kMostEventsInCell = 64;
 /// Relative to a step. If no event was found and the step has become shorter than this, a force jumps back and forth:
 /// the whole step is made.
 constexpr double kShortest = 0.05;
-/// Hits on stops are resolved more finely by this factor times the number of steps in a cell.
+/// Hits are resolved more finely by this factor times the number of steps in a cell.
 constexpr double kRefinement = 2;
+/// In a hit, steps become longer by two after this many good ones, times the number of steps in a cell.
+constexpr int kGoodSteps = 6;
+/// Most halvings of steps in a hit, as in a step.
+constexpr int kMostLevels = 40;
 /// Relative to a step: sums of steps may miss times by this.
 constexpr double kMissedTime = 1e-9;
 /// Relative to the longest cell: length of the steps before and after a jump of a set point that strikes.
@@ -100,7 +106,9 @@ bool may_have_events(const Simulation& simulation) {
   });
   const bool by_slides =
       std::any_of(model.joints.begin(), model.joints.end(), [](const JointMap& joint) { return joint.leaving >= 0; });
-  return by_joints || by_drives || by_slides;
+  const bool by_contacts = std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                                       [](const auto& element) { return element->hits(); });
+  return by_joints || by_drives || by_slides || by_contacts;
 }
 
 }  // namespace
@@ -146,7 +154,10 @@ void LocatedSteps::set(int steps, double tolerance) {
   tolerance_ = tolerance;
   iterations = recoveries = 0;
   turn = 0;
+  had_contacts = false;
   next_ = 1;
+  level_ = kNoHit;
+  is_new_hit_ = false;
   set_step_of_constants(simulation_, std::min(step_of_scene_, step()));
 }
 
@@ -155,7 +166,7 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
   // learned.
   const bool stays = std::abs(length - simulation_.step_size()) <= kMissedTime * length;
   EventSearch events;
-  if (has_events_) events = {tolerance, kSlide * step(), std::max(1.0, kRefinement * steps_)};
+  if (has_events_) events = {tolerance, kSlide * step_now(), std::max(1.0, kRefinement * steps_), level_ > 0};
   flexarm::set_step(simulation_, stays ? simulation_.step_size() : length, events);
   // A remainder of a solve makes an error of the velocity. The shorter the step, the larger is this error.
   simulation_.set_tolerance(
@@ -170,10 +181,20 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
 
 /// Makes a step of this length, or a shorter one that ends at the first event in it.
 StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
-  const double tolerance = kFound * step();
+  double tolerance = events_ < kMostEventsInCell ? kFound * step_now() : length;
   if (has_events_) simulation_.snapshot(before_);
-  const double whole = length;
+  double whole = length;
   StepResult result = this->step(length, tolerance, watcher);
+  // The first step of a hit shows how long its steps may be.
+  if (is_new_hit_ && result.deepest_halving > 0 && is_in_hit()) {
+    simulation_.restore(before_);
+    const double longest = std::ldexp(length, -result.deepest_halving);
+    level_ = std::clamp(static_cast<int>(std::log2(step() / longest)), 0, kMostLevels);
+    whole = length = std::min(length, step_now());
+    tolerance = events_ < kMostEventsInCell ? kFound * step_now() : length;
+    result = this->step(length, tolerance, watcher);
+  }
+  is_new_hit_ = is_new_hit_ && length < 0.5 * step_now();
   for (int n = 1; result.reason == StepResult::Reason::EventWithin && !result.converged; ++n) {
     const double correction = length - event_of(simulation_);
     length -= (1 - kBeyond) * correction;
@@ -183,15 +204,76 @@ StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
     if (!is_found && length < kShortest * whole) length = whole;
     result = this->step(length, is_found ? tolerance : length, watcher);
   }
+  is_at_event_ = length < whole;
+  events_ += is_at_event_ ? 1 : 0;
   return result;
+}
+
+double LocatedSteps::step_now() const {
+  return std::ldexp(step(), -std::max(level_, 0));
+}
+
+double LocatedSteps::next_length(double rest, double longest) const {
+  if (level_ == kNoHit) return rest / std::ceil(rest / longest - kMissedTime);
+  // The last two steps share what is left of the cell, so that none is much shorter.
+  const double length = std::min(step_now(), longest);
+  return rest >= 2 * length ? length : rest > (1 + kMissedTime) * length ? 0.5 * rest : rest;
+}
+
+bool LocatedSteps::is_in_contact() const {
+  const double* memory = state_of(simulation_).force_memory.data();
+  for (const auto& element : model_of(simulation_).force_elements) {
+    if (element->hits() && element->remembers(memory)) return true;
+    memory += element->memory_size();
+  }
+  return false;
+}
+
+bool LocatedSteps::is_in_hit() const {
+  if (is_in_contact()) return true;
+  const std::vector<Coordinate>& coordinates = model_of(simulation_).coordinates;
+  for (std::size_t c = 0; c < coordinates.size(); ++c) {
+    const auto& limit = coordinates[c].limit;
+    if (limit && (simulation_.position(c) < limit->lower || simulation_.position(c) > limit->upper)) return true;
+  }
+  return false;
+}
+
+/// Chooses the steps of a hit. They are parts of the longest step by powers of two, which depend on the hit alone: the
+/// rule for hits is finer by the number of steps in a cell. So the steps of all tries are in the ratio of these
+/// numbers.
+void LocatedSteps::follow_hit() {
+  const int halvings = state_of(simulation_).halving_level;
+  had_contacts = had_contacts || is_in_contact();
+  if (is_at_event_) {
+    good_steps_ = 0;
+    is_new_hit_ = is_new_hit_ || level_ == kNoHit;  // perhaps
+    level_ = std::max(level_, 0);
+    return;
+  }
+  if (level_ == kNoHit) return;
+  if (!is_in_hit()) {
+    level_ = kNoHit;
+    is_new_hit_ = false;
+    return;
+  }
+  if (halvings > 0) {
+    level_ = std::min(level_ + halvings, kMostLevels);
+    good_steps_ = 0;
+  } else if (level_ > 0 && ++good_steps_ >= kGoodSteps * steps_) {
+    --level_;
+    good_steps_ = 0;
+  }
 }
 
 bool LocatedSteps::advance_through_cell(double end, RunWatcher& watcher, AccurateRun& run) {
   const double longest = (end - simulation_.time()) / steps_of(cells_[next_] - cells_[next_ - 1], steps_);
+  events_ = 0;
   double rest;
   while ((rest = end - simulation_.time()) > kMissedTime * longest) {
-    run.last = located_step(rest / std::ceil(rest / longest - kMissedTime), watcher);
+    run.last = located_step(next_length(rest, longest), watcher);
     ++run.steps;
+    if (has_events_) follow_hit();
     run.end = AccurateRun::End::Interrupted;
     if (!watcher.after_step(simulation_, run.last)) return false;
     run.end = AccurateRun::End::Failed;

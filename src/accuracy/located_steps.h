@@ -15,7 +15,7 @@ std::vector<double> known_corners(const Simulation& simulation, double begin, do
 /// Takes a simulation through a time that is cut into cells. At the end of a cell there is a corner, or results are
 /// needed. The steps of a cell have equal lengths. Beside jumps that strike, such as those of a set point that a
 /// servo's derivative follows, there are short cells. Steps also end at events, after which the rest of the cell is
-/// divided anew.
+/// divided anew. During hits, steps are shorter by a power of two, the same in all tries.
 class LocatedSteps {
  public:
   /// `cells`: ends of the cells, increasing. The first number is the time at which the simulation begins [s].
@@ -36,12 +36,24 @@ class LocatedSteps {
   /// watcher ends the run; `run.end` says which.
   bool advance_to(double time, RunWatcher& watcher, AccurateRun& run);
 
-  long iterations = 0;  ///< of Newton's method
-  int recoveries = 0;   ///< other guesses, and halvings unless events may cause them
-  double turn = 0;      ///< largest rotation of a node in a sub-step [rad]
+  long iterations = 0;        ///< of Newton's method
+  int recoveries = 0;         ///< other guesses, and halvings unless events may cause them
+  double turn = 0;            ///< largest rotation of a node in a sub-step [rad]
+  bool had_contacts = false;  ///< whether bodies have touched each other
 
  private:
+  /// Not within a hit.
+  static constexpr int kNoHit = -1;
+
   double steps_of(double length, double steps) const;
+  /// Length of the next step if the rest of the cell and its longest steps have these lengths.
+  double next_length(double rest, double longest) const;
+  /// Length of the longest steps, in a hit of those in it [s].
+  double step_now() const;
+  void follow_hit();
+  /// Whether bodies touch each other; or that, or coordinates their stops.
+  bool is_in_contact() const;
+  bool is_in_hit() const;
   bool advance_through_cell(double end, RunWatcher& watcher, AccurateRun& run);
   StepResult located_step(double length, RunWatcher& watcher);
   StepResult step(double length, double tolerance, RunWatcher& watcher);
@@ -52,8 +64,12 @@ class LocatedSteps {
   double longest_ = 0, tolerance_ = 0;
   double step_of_scene_;  // from which the scheme had its constants at the beginning [s]
   int steps_ = 1;
-  bool has_events_;
-  Snapshot before_;  // state before the step
+  int level_ = kNoHit;  // in a hit, steps have the length step() / 2^level_
+  int good_steps_ = 0;  // since the level has changed
+  int events_ = 0;      // in this cell so far
+  bool has_events_, is_at_event_ = false;
+  bool is_new_hit_ = false;  // no step of this hit has shown the level yet
+  Snapshot before_;          // state before the step
 };
 
 }  // namespace flexarm

@@ -56,6 +56,9 @@ constexpr double kEvaluation = 0.15;
 constexpr double kIterations = 2.5;
 /// Schemes of higher order are first assumed to have this order, until their own tries show more.
 constexpr double kCommonOrder = 2;
+/// The order that is assumed for estimates if bodies have touched each other. Errors of hits are of second order, but
+/// with factors that vary from try to try. (docs/notes/accuracy.md 4)
+constexpr double kOrderOfContacts = 1;
 
 /// The largest distance of any point from its position in `motion` at the end of an interval [m].
 double distance(const std::vector<Vector3>& positions, const JudgedMotion& motion, int interval) {
@@ -120,6 +123,7 @@ void SchemeTries::set_steps() {
 
 /// The order that is assumed for an estimate. `difference`: between the last try and the one before, relative.
 double SchemeTries::supposed_order(double difference) const {
+  if (stepping_.had_contacts) return kOrderOfContacts;
   if (scheme_.order <= kCommonOrder) return scheme_.order;
   if (std::isnan(difference_) || difference == 0 || difference_ == 0) return kCommonOrder;
   const double seen = std::log(difference_ / difference) / std::log(planned_before_ / planned_earlier_);
@@ -197,7 +201,7 @@ bool SchemeTries::judge(AccurateRun& run) {
   const bool is_better = !(estimate_ > 0.5 * last), is_resolved = stepping_.turn <= kResolvedTurn;
   stagnations_ = is_better || !is_resolved ? 0 : stagnations_ + 1;
   unsettled_ = is_better ? std::max(unsettled_ - 1, 0) : kUnsettled;
-  const bool may_be_round_off = is_small(last) && was_resolved_;
+  const bool may_be_round_off = is_small(last) && is_small(estimate_) && was_resolved_;
   was_resolved_ = is_resolved;
   if (stagnations_ < (may_be_round_off ? 1 : kMostStagnations)) return false;
   run.end = AccurateRun::End::NoConvergence;

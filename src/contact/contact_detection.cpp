@@ -74,8 +74,8 @@ ForceRoom ContactElement::room(const ForceStart& start) const {
   return {size, 2 + 2 * spread_, spread_ * (middle_arm_.norm() + 2 * own_radius_ + bounds.radius + arm)};
 }
 
-bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {
-  if (step.duration == 0) return false;
+template <class Visit>
+void ContactElement::for_each_passage(const ForceStep& step, const Visit& visit) const {
   const Bounds begin = bounds(poses_in(step.begin)), end = bounds(poses_in(step.end));
   const double most = (end.middle - begin.middle).norm() + 2 * begin.radius + end.radius;
   const std::size_t shapes = surface_.shapes.size();
@@ -84,34 +84,64 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
     if (shape.gap(begin.middle) > most) continue;
     const double* memory = step.memory + PointMemory::kSize * k;
     for (const ContactStation& station : side_.stations) {
-      if (is_too_long(station, shape, memory_at(memory), step, count > 0)) return true;
+      const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
+      const bool is_far = shape.gap(from) - station.radius > (to - from).norm();
+      if (!is_far && !visit(passage(station, shape, from, to, memory_at(memory), step), shape)) return;
       memory += PointMemory::kSize * shapes;
     }
   }
-  return false;
 }
 
-bool ContactElement::is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
-                                 const ForceStep& step, bool acts) const {
-  const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
-  if (shape.gap(from) - station.radius > (to - from).norm()) return false;
+ContactElement::Passage ContactElement::passage(const ContactStation& station, const ContactShape& shape,
+                                                const Vector3& from, const Vector3& to, const PointMemory& memory,
+                                                const ForceStep& step) const {
   PointMotion motion;
   motion.begin = from;
   motion.end = to;
   motion.duration = std::abs(step.duration);
   motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
-  const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory);
-  // A corner that has not entered by any face.
-  if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
-  const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
-  const double begin_rate =
-      let_out_rate(law_, felt.start) - begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
+  Passage out{from, to, felt_shape(shape, law_, station.radius, motion, memory), {}, {}, {}, 0};
+  const FeltShape& felt = out.felt;
+  if (!felt.is_felt) return out;
+  out.begin = felt.shape.distance(from);
+  out.end = felt.shape.distance(to);
+  out.begin_rate =
+      let_out_rate(law_, felt.start) - out.begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
   const double end_start = let_out(law_, felt.start, step.duration);
-  ContactChange change{felt.radius - felt.start - begin.value, felt.radius - end_start - end.value, motion.duration};
-  change.speed = approach_speed(change.begin, begin_rate, memory.speed);
-  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, felt.radius - felt.start);
-  return !acts || begin.gradient.dot(end.gradient) < kOtherSide ||
-         is_coarse_hit(law_, change, begin_rate, step.refinement);
+  out.change = {felt.radius - felt.start - out.begin.value, felt.radius - end_start - out.end.value, motion.duration};
+  out.change.speed = approach_speed(out.change.begin, out.begin_rate, memory.speed);
+  return out;
+}
+
+bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {
+  if (step.duration == 0) return false;
+  bool found = false;
+  for_each_passage(step, [&](const Passage& passage, const ContactShape& shape) {
+    found = is_too_long(passage, shape, step, count > 0);
+    return !found;
+  });
+  return found;
+}
+
+bool ContactElement::is_too_long(const Passage& passage, const ContactShape& shape, const ForceStep& step,
+                                 bool acts) const {
+  const FeltShape& felt = passage.felt;
+  // A corner that has not entered by any face.
+  if (!felt.is_felt) return passes_through(shape, passage.from, passage.to, -kUnseen * law_.depth);
+  if (passage.change.begin <= 0 && passage.change.end <= 0)
+    return passes_through(felt.shape, passage.from, passage.to, felt.radius - felt.start);
+  return !acts || passage.begin.gradient.dot(passage.end.gradient) < kOtherSide ||
+         is_coarse_hit(law_, passage.change, passage.begin_rate, step.refinement);
+}
+
+void ContactElement::put_penetrations(const ForceStep& step, const int*, int, const PenetrationTaker& take) const {
+  if (step.duration == 0) return;
+  for_each_passage(step, [&](const Passage& passage, const ContactShape&) {
+    const ContactChange& change = passage.change;
+    if (passage.felt.is_felt && (change.begin > 0 || change.end > 0))
+      take(change.begin, change.end, passage.begin_rate);
+    return true;
+  });
 }
 
 }  // namespace flexarm

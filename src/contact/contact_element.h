@@ -81,6 +81,8 @@ class ContactElement : public ForceElement {
   ForceRoom room(const ForceStart& start) const override;
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
+  void put_penetrations(const ForceStep& step, const int* nodes, int count,
+                        const PenetrationTaker& take) const override;
   bool hits() const override { return true; }
   double energy(const State& state, const double* memory) const override;
   /// The measures of points that touch: the gap; with friction, the slip; with resistance to turning, the rotation.
@@ -128,9 +130,21 @@ class ContactElement : public ForceElement {
   /// Returns the velocity of a station's middle relative to the shapes, in their frame [m/s].
   template <class PoseOf>
   Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities) const;
+  /// What a solved step does to one station and shape.
+  struct Passage {
+    Vector3 from, to;  ///< middles of the station in the frame of the shapes [m]
+    FeltShape felt;
+    SignedDistance begin, end;  ///< from the felt shape
+    ContactChange change;
+    double begin_rate;  ///< of the penetration [m/s]
+  };
+  /// Calls visit(passage, shape) for all pairs that may touch in a solved step, until it returns false.
+  template <class Visit>
+  void for_each_passage(const ForceStep& step, const Visit& visit) const;
+  Passage passage(const ContactStation& station, const ContactShape& shape, const Vector3& from, const Vector3& to,
+                  const PointMemory& memory, const ForceStep& step) const;
   /// Whether a step is too long for one station and shape. `acts`: the element acts on nodes in this step.
-  bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
-                   const ForceStep& step, bool acts) const;
+  bool is_too_long(const Passage& passage, const ContactShape& shape, const ForceStep& step, bool acts) const;
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;

@@ -55,34 +55,67 @@ double LineContact::stiffening(const LinePair& pair, const ClosestPoint& place, 
   return std::hypot(1.0, crossing_ * sine);
 }
 
-bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int count) const {
-  if (step.duration == 0) return false;
+/// What a solved step does to one pair.
+struct LineContact::Passage {
+  std::size_t index;
+  const ClosestPoint &begin, &end;  ///< nearest places
+  Vector3 before, behind;           ///< from there to the station's middle [m]
+  ContactChange change;
+  double begin_rate;  ///< of the penetration [m/s]
+};
+
+/// Calls visit(passage, bound of the relative motion) for all pairs that are near at both ends of a solved step, until
+/// it returns false.
+template <class Visit>
+void LineContact::for_each_passage(const ForceStep& step, const Visit& visit) const {
   const double way = search_.way(step);
-  if (way < 0) return false;  // nothing can have touched
+  if (way < 0) return;  // nothing can have touched
   const NodePlaces first(step.begin), last(step.end);
   const LineSearch::Middles from = search_.middles(first), to = search_.middles(last);
   const LineSearch::Places begin = search_.closest(from, way, first, {}), end = search_.closest(to, way, last, {});
-  const ListedNodes listed{nodes, count};
   for (std::size_t k = 0; k < search_.pairs().size(); ++k) {
     if (begin[k].element < 0 || end[k].element < 0) continue;
     const LinePair& pair = search_.pairs()[k];
     const double radius = search_.radius_of(pair);
     const Vector3 before = search_.offset(from[k], begin[k], first), behind = search_.offset(to[k], end[k], last);
-    const double start = line_memory_at(step.memory + LineMemory::kSize * k).start;
-    ContactChange change{radius - start - before.norm(), radius - let_out(law_, start, step.duration) - behind.norm(),
-                         std::abs(step.duration)};
-    if (change.begin <= 0 && change.end <= 0) {
-      if (search_.passes_through(k, begin[k], end[k], way, step)) return true;
-      continue;
+    const double* memory = step.memory + LineMemory::kSize * k;
+    const double start = line_memory_at(memory).start;
+    Passage passage{k, begin[k], end[k], before, behind, {}, 0};
+    passage.change = {radius - start - before.norm(), radius - let_out(law_, start, step.duration) - behind.norm(),
+                      std::abs(step.duration)};
+    if (passage.change.begin > 0 || passage.change.end > 0) {
+      passage.begin_rate = rate(pair, begin[k], first, step.velocities) + let_out_rate(law_, start);
+      passage.change.speed = approach_speed(passage.change.begin, passage.begin_rate, *memory);
     }
-    const bool is_seen = count > 0 && (change.begin <= 0 || search_.is_listed(begin[k].element, listed)) &&
-                         (change.end <= 0 || search_.is_listed(end[k].element, listed));
-    if (!is_seen || before.dot(behind) < kOtherSide * before.norm() * behind.norm()) return true;
-    const double rate = this->rate(pair, begin[k], first, step.velocities) + let_out_rate(law_, start);
-    change.speed = approach_speed(change.begin, rate, step.memory[LineMemory::kSize * k]);
-    if (is_coarse_hit(law_, change, rate, step.refinement)) return true;
+    if (!visit(passage, way)) return;
   }
-  return false;
+}
+
+bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int count) const {
+  if (step.duration == 0) return false;
+  const ListedNodes listed{nodes, count};
+  const auto is_too_long = [&](const Passage& passage, double way) {
+    const ContactChange& change = passage.change;
+    if (change.begin <= 0 && change.end <= 0)
+      return search_.passes_through(passage.index, passage.begin, passage.end, way, step);
+    const bool is_seen = count > 0 && (change.begin <= 0 || search_.is_listed(passage.begin.element, listed)) &&
+                         (change.end <= 0 || search_.is_listed(passage.end.element, listed));
+    return !is_seen ||
+           passage.before.dot(passage.behind) < kOtherSide * passage.before.norm() * passage.behind.norm() ||
+           is_coarse_hit(law_, change, passage.begin_rate, step.refinement);
+  };
+  bool found = false;
+  for_each_passage(step, [&](const Passage& passage, double way) { return !(found = is_too_long(passage, way)); });
+  return found;
+}
+
+void LineContact::put_penetrations(const ForceStep& step, const int*, int, const PenetrationTaker& take) const {
+  if (step.duration == 0) return;
+  for_each_passage(step, [&](const Passage& passage, double) {
+    const ContactChange& change = passage.change;
+    if (change.begin > 0 || change.end > 0) take(change.begin, change.end, passage.begin_rate);
+    return true;
+  });
 }
 
 // ---------------------------------------------------------------- forces

@@ -24,6 +24,8 @@ class LineContact : public ForceElement {
   ForceRoom room(const ForceStart& start) const override { return search_.room(start); }
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
+  void put_penetrations(const ForceStep& step, const int* nodes, int count,
+                        const PenetrationTaker& take) const override;
   bool hits() const override { return true; }
   double energy(const State& state, const double* memory) const override;
   ForceMeasures measures(const State& state, const double* memory, const int* nodes) const override;
@@ -47,6 +49,9 @@ class LineContact : public ForceElement {
   double deepest(const std::vector<NodePose>& poses) const;
 
  private:
+  struct Passage;
+  template <class Visit>
+  void for_each_passage(const ForceStep& step, const Visit& visit) const;
   /// Returns the law of one pair. `stiffening`: see LineMemory::stiffening.
   ContactLaw law_of(const LinePair& pair, double stiffening) const;
   /// Returns the stiffening of a pair that begins to touch at a place.

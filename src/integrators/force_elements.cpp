@@ -154,6 +154,22 @@ bool ForceElements::need_halves(double refinement) {
   return false;
 }
 
+// The rate at a touch is kept for the whole hit, so that touches are located as finely as jumps of forces. Where a
+// contact ends, its force has a kink.
+void ForceElements::note_events(FirstEvent& first) {
+  if (!may_hit_) return;
+  const ForceStep step = this->step();
+  far_.end(step.begin, step.end);
+  const ForceElementList& elements = configuration_.model().force_elements;
+  const PenetrationTaker take = [&](double begin, double end, double begin_rate) {
+    const double event = crossing(begin, end, 0, begin_rate * step.duration);
+    end > 0 ? first.note(event) : first.note_kink(event);
+  };
+  for (std::size_t k = 0; k < elements.size(); ++k)
+    if (!far_.stays_far(k) && elements[k]->hits())
+      elements[k]->put_penetrations(step_of(k, step), nodes_[k].data(), static_cast<int>(nodes_[k].size()), take);
+}
+
 void ForceElements::accept(State& state) const {
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k)

@@ -7,6 +7,7 @@
 #include "integrators/balance.h"
 #include "integrators/far_elements.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_events.h"
 #include "integrators/step_histories.h"
 
 namespace flexarm {
@@ -26,6 +27,8 @@ class ForceElements {
   void evaluate(Balance& balance);
   /// Whether a force element requires a shorter step, see ForceElement::needs_halves(). For a solved step.
   bool need_halves(double refinement);
+  /// Notes when contacts begin and end in a solved step.
+  void note_events(FirstEvent& first);
   /// Whether there may be a hit in the step begun last, see ForceElement::hits().
   bool may_hit() const { return may_hit_; }
   /// The first element whose forces were not finite at the last evaluation; -1: none.

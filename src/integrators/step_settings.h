@@ -8,8 +8,8 @@
 namespace flexarm {
 
 /// Settings of the search for events within steps, at which the equations change: friction stops a coordinate or
-/// changes its direction, a stop is touched or left, a gear enters or leaves its play, a slider reaches the end of its
-/// line, a motor reaches its limit. (docs/notes/accuracy.md 4)
+/// changes its direction, a stop or a body is touched or left, a gear enters or leaves its play, a slider reaches the
+/// end of its line, a motor reaches its limit. (docs/notes/accuracy.md 4)
 struct EventSearch {
   /// If an event lies within a step, and farther than this from both ends, the step is not done. It returns
   /// StepResult::Reason::EventWithin, and Stepper::event() gives the time of the event [s]. 0: steps ignore events.
@@ -19,10 +19,13 @@ struct EventSearch {
   /// Factor >= 1 by which steps are shorter in hits on stops. If it is above 1, reversals of smooth friction are
   /// resolved by shorter steps, too.
   double refinement = 1;
+  /// Whether a hit is going on. Its steps are so short that they need not be halved for kinks at unknown times.
+  bool is_in_hit = false;
 
   bool is_on() const { return tolerance > 0; }
   bool operator==(const EventSearch& other) const {
-    return tolerance == other.tolerance && slide == other.slide && refinement == other.refinement;
+    return tolerance == other.tolerance && slide == other.slide && refinement == other.refinement &&
+           is_in_hit == other.is_in_hit;
   }
 };
 

@@ -84,6 +84,7 @@ void StepSystem::note_events(FirstEvent& first) {
   contacts_.note_events(first);
   actuators_.note_events(first);
   configuration_.note_events(first);
+  force_elements_.note_events(first);
 }
 
 void StepSystem::carry_strains(double fraction) {

@@ -112,8 +112,9 @@ class StepSystem {
     return reversals_.turn_too_fast(refinement) || actuators_.turn_too_fast(refinement);
   }
   /// Notes when forces jump in the step, which reduces the order of the scheme: friction stops a coordinate or changes
-  /// its direction, a stop is touched, a gear enters or leaves its play, a slider reaches the end of its line. Also
-  /// notes when forces have kinks: a stop begins or ceases to push, a motor reaches or leaves its limit.
+  /// its direction, a stop or a body is touched, a gear enters or leaves its play, a slider reaches the end of its
+  /// line. Also notes when forces have kinks: a stop begins or ceases to push, a body is left, a motor reaches or
+  /// leaves its limit.
   void note_events(FirstEvent& first);
   /// Whether forces have a kink at an unknown time within the step: a resting coordinate begins to slide.
   bool has_kink() const { return friction_.breaks_away(); }

@@ -128,7 +128,8 @@ StepResult::Reason Stepper::flaw_by_events(const State& state, double step, cons
     event_ = event;
     return StepResult::Reason::EventWithin;
   }
-  if (may_halve && state.halving_level < kKinkHalvings && system_.has_kink()) return StepResult::Reason::HitTooFast;
+  const bool halves_at_kinks = may_halve && !events.is_in_hit && state.halving_level < kKinkHalvings;
+  if (halves_at_kinks && system_.has_kink()) return StepResult::Reason::HitTooFast;
   return StepResult::Reason::None;
 }
 

@@ -162,6 +162,9 @@ struct TouchingPoint {
   double gap = 0;                    ///< < 0: minus the penetration [m]
 };
 using TouchingPointTaker = std::function<void(const TouchingPoint&)>;
+/// Takes the penetration of a contact point at both ends of a step [m], < 0 without contact, and its rate at the
+/// beginning [m/s].
+using PenetrationTaker = std::function<void(double begin, double end, double begin_rate)>;
 
 /// A force element: it acts between points of the mechanism. It is constant, like the model that it belongs to; its
 /// memory is part of the State. Steps, energies, equilibria, modes, linear models, sensitivities and results use only
@@ -231,6 +234,11 @@ class ForceElement {
   virtual bool needs_halves(const ForceStep& step, const int* nodes, int count) const {
     static_cast<void>(step), static_cast<void>(nodes), static_cast<void>(count);
     return false;
+  }
+  /// For a contact: calls `take` for each contact point that touches at either end of a solved step.
+  virtual void put_penetrations(const ForceStep& step, const int* nodes, int count,
+                                const PenetrationTaker& take) const {
+    static_cast<void>(step), static_cast<void>(nodes), static_cast<void>(count), static_cast<void>(take);
   }
   /// Whether bodies hit each other in steps in which the element acts on nodes. Such steps may be halved more often.
   virtual bool hits() const { return false; }
