@@ -39,7 +39,7 @@ class Browser:
             options.add_argument(switch)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(service=service, options=options)
-        self.driver.set_script_timeout(60)
+        self.driver.set_script_timeout(600)
         self.resize(WIDTH, HEIGHT)
 
     def skip_unless_it_draws(self):

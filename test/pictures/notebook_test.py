@@ -29,7 +29,7 @@ def notebook(tmp_path):
     (tmp_path / "arm.ipynb").write_text(json.dumps(
         {"cells": [cell], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 2}))
     subprocess.run([sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "arm.ipynb"], cwd=tmp_path,
-                   check=True, timeout=120, env={**os.environ, "JUPYTER_PLATFORM_DIRS": "1"})
+                   check=True, timeout=1000, env={**os.environ, "JUPYTER_PLATFORM_DIRS": "1"})
     return tmp_path / "arm.html"
 
 

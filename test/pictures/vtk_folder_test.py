@@ -118,7 +118,7 @@ def test_a_disk_that_is_full(arm, tmp_path):
                "mount -t tmpfs -o size=200k none \"$1\" && \"$2\" simulate --quiet \"$3\" --until 5 --vtk \"$1/vtk\"; "
                "echo $?; cat \"$1/vtk/run.pvd\"", "sh", str(tmp_path), os.environ["FLEXARM_PROGRAM"], str(arm[2])]
     result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
-                            timeout=120, check=False)
+                            timeout=1000, check=False)
     if "mount:" in result.stderr or "unshare:" in result.stderr:
         pytest.skip("no small disk can be mounted here: " + result.stderr)
     assert "No space left on device" in result.stderr

@@ -179,7 +179,7 @@ def test_a_signal_keeps_the_best_so_far(rod, number):
     with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, universal_newlines=True) as process:
         line = process.stderr.readline()
         process.send_signal(number)
-        _, said = process.communicate(timeout=100)
+        _, said = process.communicate(timeout=1000)
     assert line.startswith("iteration 1, 3 simulations: ")
     assert process.returncode == 128 + number and "interrupted; the best values so far are kept" in said
     assert set(estimates()) == {"mass", "damping"}

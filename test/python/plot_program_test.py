@@ -26,7 +26,7 @@ def folder(tmp_path):
 
 def plot(folder, *arguments, status=0, **options):
     """Run `flexarm plot ...` in the folder. Return its output, or its error output if it fails."""
-    result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "plot", *arguments], cwd=folder, check=False, timeout=60,
+    result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "plot", *arguments], cwd=folder, check=False, timeout=1000,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**WITHOUT_DISPLAY, "COLUMNS": "70",
                                                                                   "LINES": "20"}, **options)
     assert result.returncode == status, result.stderr
@@ -73,7 +73,7 @@ def test_without_a_display_the_terminal_is_used(folder):
 def test_an_unreachable_display_is_none(folder):
     result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "plot", "one.csv", "probe/tip/x"], cwd=folder, check=True,
                             env={**WITHOUT_DISPLAY, "DISPLAY": ":4711"}, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, timeout=60)
+                            stderr=subprocess.PIPE, timeout=1000)
     assert b"probe/tip/x [m]" in result.stdout
     assert result.stderr.startswith(b"flexarm: plot: no window could be opened on the display")
 
@@ -139,7 +139,7 @@ def test_what_is_left_of_a_file_is_drawn_with_a_warning(tmp_path):
         (tmp_path / ("no_" + name)).write_bytes(data[:100])
     for name, said in (("cut_run.h5", "cut_run.h5 has only "), ("cut_run.csv", "cut_run.csv: the last line has no ")):
         result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "plot", name, "joint/*/position", "--output", "a.svg"],
-                                cwd=tmp_path, check=False, timeout=60, stderr=subprocess.PIPE, env=WITHOUT_DISPLAY)
+                                cwd=tmp_path, check=False, timeout=1000, stderr=subprocess.PIPE, env=WITHOUT_DISPLAY)
         assert result.returncode == 0 and result.stderr.decode().startswith("flexarm: plot: warning: " + said)
         assert "joint/elbow/position" in [text.strip() for text in labels(tmp_path / "a.svg")]
     said = plot(tmp_path, "no_run.h5", "joint/*/position", status=2)

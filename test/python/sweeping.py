@@ -68,6 +68,6 @@ def command(*arguments):
 def sweep(folder, *arguments, status=0):
     """Run `flexarm sweep rod.urdf plan.yaml ...` in the folder. Return its error output and its standard output."""
     result = subprocess.run(command("rod.urdf", "plan.yaml", *arguments), cwd=folder, check=False,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=120)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=1000)
     assert result.returncode == status, result.stderr
     return result.stderr, result.stdout

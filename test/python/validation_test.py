@@ -194,7 +194,7 @@ def validate(*words, folder=None):
     """Run `flexarm bench validation ...`. Return its exit status, output and error output."""
     words = [os.environ["FLEXARM_PROGRAM"], "bench", "validation", *map(str, words)]
     result = subprocess.run(words, cwd=folder, check=False, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            universal_newlines=True, timeout=300)
+                            universal_newlines=True, timeout=1000)
     return result.returncode, result.stdout, result.stderr
 
 

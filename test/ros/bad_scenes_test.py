@@ -19,7 +19,7 @@ def run_node(*arguments):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         universal_newlines=True,
-        timeout=20,
+        timeout=100,
         check=False,
     )
 

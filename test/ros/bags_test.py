@@ -38,7 +38,7 @@ class Recorder:
 def replay(bag, *arguments, scene=SCENE):
     """Return exit status and output of `flexarm replay`."""
     done = subprocess.run(["rosrun", "flexarm", "flexarm", "replay", bag, scene, *arguments], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=60, check=False)
+                          stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
     return done.returncode, done.stdout
 
 

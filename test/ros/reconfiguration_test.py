@@ -13,7 +13,7 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
 
-PATIENCE = 10.0  # s
+PATIENCE = 60.0  # s
 
 
 class Reconfiguration(unittest.TestCase):

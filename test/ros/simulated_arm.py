@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty, Trigger
 
-PATIENCE = 10.0  # s, wall time
+PATIENCE = 60.0  # s, wall time
 
 
 def wait_until(condition, what, patience=PATIENCE):

@@ -166,7 +166,7 @@ class Web(unittest.TestCase):
         garbage = bytes(k * k % 251 for k in range(3000))
         many = b"GET / HTTP/1.1\r\n" + b"X: y\r\n" * 5000 + b"\r\n"
         for request in (garbage, many, b"POST / HTTP/1.1\r\n\r\n" + garbage):
-            with socket.create_connection(place_of(self.url), timeout=10) as connection:
+            with socket.create_connection(place_of(self.url), timeout=60) as connection:
                 connection.sendall(request)
         for data in (garbage, b"\x81\x85\0\0\0\0reset", b"\x88\x80\0\0\0\0"):
             with self.look() as viewer:

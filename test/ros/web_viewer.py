@@ -27,7 +27,7 @@ def place_of(url):
 
 def ask(url, path="/", method="GET", **headers):
     """Return status and text of an answer."""
-    connection = http.client.HTTPConnection(*place_of(url), timeout=10)
+    connection = http.client.HTTPConnection(*place_of(url), timeout=60)
     connection.request(method, path, headers=headers)
     answer = connection.getresponse()
     text = answer.read().decode()
@@ -41,7 +41,7 @@ class Viewer:
     def __init__(self, url, **headers):
         self.received = b""
         self.picture = None
-        self.socket = socket.create_connection(place_of(url), timeout=10)
+        self.socket = socket.create_connection(place_of(url), timeout=60)
         key = base64.b64encode(os.urandom(16))
         host = urlsplit(url).netloc
         fields = dict({"Host": host, "Origin": "http://" + host}, **headers)

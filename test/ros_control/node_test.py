@@ -10,7 +10,7 @@ import rostest
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 
-PATIENCE = 20  # wall time [s]
+PATIENCE = 60  # wall time [s]
 
 
 class Node(unittest.TestCase):
