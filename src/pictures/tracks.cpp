@@ -21,6 +21,11 @@ void append_bits(Number number, std::string& bytes) {
   for (std::size_t i = 0; i < sizeof number; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xff);
 }
 
+/// Whether a track may contain a value: its range must be a number, too.
+bool is_shown(double value) {
+  return std::abs(value) <= 0.5 * std::numeric_limits<double>::max();
+}
+
 void append_number(double number, std::string& bytes) {
   std::uint64_t bits;
   std::memcpy(&bits, &number, sizeof bits);
@@ -37,7 +42,7 @@ void append_track(const std::vector<double>& values, std::string& bytes) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   bool has_gaps = false;
   for (const double value : values) {
-    if (!std::isfinite(value))
+    if (!is_shown(value))
       has_gaps = true;
     else
       least = std::min(least, value), most = std::max(most, value);
@@ -50,12 +55,10 @@ void append_track(const std::vector<double>& values, std::string& bytes) {
   if (!(most > least)) return;
   std::string high;
   std::uint16_t last = 0;
-  const double scale = kSteps / (most - least);
+  const double range = most - least;  // may be so small that its reciprocal is not finite
   for (const double value : values) {
     const std::uint16_t step =
-        std::isfinite(value)
-            ? static_cast<std::uint16_t>(std::clamp<double>(std::round((value - least) * scale), 0, kSteps))
-            : kMissing;
+        is_shown(value) ? static_cast<std::uint16_t>(std::round(kSteps * ((value - least) / range))) : kMissing;
     const auto difference = static_cast<std::uint16_t>(step - last);
     bytes += static_cast<char>(difference & 0xff);
     high += static_cast<char>(difference >> 8);
@@ -74,8 +77,8 @@ void append_mesh(const meshes::SurfaceMesh& mesh, std::string& bytes) {
     for (int i = 0; i < 3; ++i) append_number(corner[i], bytes);
   for (const auto& vertex : mesh.vertices)
     for (int i = 0; i < 3; ++i) {
-      const double extent = most[i] - least[i];
-      const double part = extent > 0 ? (vertex.position[i] - least[i]) / extent : 0;
+      const double half = 0.5 * most[i] - 0.5 * least[i];  // the whole may not be finite
+      const double part = half > 0 ? (0.5 * vertex.position[i] - 0.5 * least[i]) / half : 0;
       append_bits(static_cast<std::uint16_t>(std::round(65535 * part)), bytes);
     }
   for (const auto& triangle : mesh.triangles)

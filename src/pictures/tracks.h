@@ -11,7 +11,7 @@ namespace flexarm::pictures {
 
 /// Appends numbers of 64 bits, little-endian.
 void append_numbers(const std::vector<double>& numbers, std::string& bytes);
-/// Appends a track. Numbers that are not finite count as missing.
+/// Appends a track. Numbers that are not finite, or whose amount is above 8.9e307, count as missing.
 void append_track(const std::vector<double>& values, std::string& bytes);
 void append_mesh(const meshes::SurfaceMesh& mesh, std::string& bytes);
 
