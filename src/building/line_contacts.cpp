@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -94,6 +96,7 @@ void join_stations_to_line(const Model& model, const ScenePlan& plan, const Link
     touch.side = {{own.elements[k].begin(), own.elements[k].begin() + own.order + 1}, {}};
     touch.pairs.clear();
     touch.spacing = length / spans;
+    const int at_once = std::max(static_cast<int>(LineSearch::most_size(touch.line) / touch.spacing), 1);
     for (int i = 0; i <= spans; ++i) {
       const LineWeights weights = line_weights(own.order, -1 + 2.0 * i / spans);
       ContactStation station;
@@ -107,8 +110,36 @@ void join_stations_to_line(const Model& model, const ScenePlan& plan, const Link
     }
     begin += length;
     // Where lines cross, the stations together have the law's stiffness, at that depth. (docs/notes/contact.md 6)
-    place(links, touch, law, 15.0 / 16 * beam.length / half, model, placed);
+    const double crossing = 15.0 / 16 * beam.length / half;
+    const std::vector<LinePair> pairs = std::move(touch.pairs);
+    for (int first = 0; first <= spans; first += at_once) {
+      touch.pairs.clear();
+      std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(touch.pairs),
+                   [&](const LinePair& pair) { return pair.station >= first && pair.station < first + at_once; });
+      place(links, touch, law, crossing, model, placed);
+    }
   }
+}
+
+/// Divides the stations of a body into groups of at most this size [m].
+std::vector<std::vector<int>> groups_of(const ContactStations& body, double size) {
+  Vector3 least = body.stations[0].arm, most = least;
+  for (const ContactStation& station : body.stations) {
+    least = least.cwiseMin(station.arm);
+    most = most.cwiseMax(station.arm);
+  }
+  const bool is_one = (most - least).norm() <= size;
+  std::map<std::array<double, 3>, std::vector<int>> cells;  // cubes whose diagonals have that size
+  for (std::size_t i = 0; i < body.stations.size(); ++i) {
+    std::array<double, 3> cell{};
+    for (int k = 0; k < 3 && !is_one; ++k)
+      cell[k] = std::floor(std::sqrt(3.0) / size * (body.stations[i].arm[k] - least[k]));
+    cells[cell].push_back(static_cast<int>(i));
+  }
+  std::vector<std::vector<int>> groups;
+  groups.reserve(cells.size());
+  for (auto& [cell, stations] : cells) groups.push_back(std::move(stations));
+  return groups;
 }
 
 }  // namespace
@@ -131,10 +162,14 @@ void join_with_line(const Model& model, const ScenePlan& plan, const LinkPair& l
   for (const ContactStations& body : bodies) {
     const std::vector<LineRange> ranges = ranges_without(touch.line, body.nodes[0]);
     touch.side = body;
-    for (std::size_t i = 0; i < body.stations.size(); ++i) {
-      for (const LineRange& range : ranges) touch.pairs.push_back({static_cast<int>(i), range, {}});
-      const bool is_full = touch.pairs.size() + ranges.size() > LineSearch::kMostPairs;
-      if (!is_full && i + 1 < body.stations.size()) continue;
+    for (const std::vector<int>& group : groups_of(body, LineSearch::most_size(touch.line))) {
+      for (const int station : group) {
+        if (touch.pairs.size() + ranges.size() > LineSearch::kMostPairs) {
+          place(links, touch, law, 0, model, placed);
+          touch.pairs.clear();
+        }
+        for (const LineRange& range : ranges) touch.pairs.push_back({station, range, {}});
+      }
       place(links, touch, law, 0, model, placed);
       touch.pairs.clear();
     }

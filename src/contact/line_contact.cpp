@@ -284,10 +284,19 @@ double LineContact::energy(const State& state, const double* memory) const {
   return energy;
 }
 
+std::vector<int> LineContact::nodes_at(const State& state) const {
+  std::vector<NodePose> poses;
+  poses.reserve(state.nodes.size());
+  for (const NodeState& node : state.nodes) poses.push_back(node_pose(node));
+  std::vector<int> nodes(most_nodes());
+  nodes.resize(find_nodes({poses, {}}, nodes.data()));
+  return nodes;
+}
+
 template <class Visit>
-void LineContact::for_each_touching(const NodePlaces& now, const Visit& visit) const {
+void LineContact::for_each_touching(const NodePlaces& now, const ListedNodes& listed, const Visit& visit) const {
   const LineSearch::Middles middles = search_.middles(now);
-  const LineSearch::Places places = search_.closest(middles, 0, now, {});
+  const LineSearch::Places places = search_.closest(middles, 0, now, listed);
   for (std::size_t k = 0; k < search_.pairs().size(); ++k)
     if (places[k].element >= 0) visit(search_.pairs()[k], places[k], search_.offset(middles[k], places[k], now));
 }
@@ -304,7 +313,7 @@ void LineContact::start(const State& state, const double*, double* memory) const
 
 double LineContact::deepest(const std::vector<NodePose>& poses) const {
   double deepest = 0;
-  for_each_touching(NodePlaces(poses), [&](const LinePair& pair, const ClosestPoint&, const Vector3& offset) {
+  for_each_touching(NodePlaces(poses), {}, [&](const LinePair& pair, const ClosestPoint&, const Vector3& offset) {
     deepest = std::max(deepest, search_.radius_of(pair) - offset.norm());
   });
   return deepest;
@@ -343,23 +352,23 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
   return least;
 }
 
-ForceMeasures LineContact::measures(const State& state, const double*, const int* nodes) const {
+ForceMeasures LineContact::measures(const State& state, const double*, const int*) const {
   const NodePlaces now(state);
-  std::vector<NodePose> poses;
-  for (const NodeState& node : state.nodes) poses.push_back(node_pose(node));
-  std::vector<int> found(most_nodes());
-  const int count = find_nodes({poses, {}}, found.data());
+  const std::vector<int> nodes = nodes_at(state);
+  const int count = static_cast<int>(nodes.size());
+  const ListedNodes listed{nodes.data(), count};
   const int each = law_.friction > 0 ? 3 : 1;
   Eigen::Index rows = 0;
-  for_each_touching(now, [&](const LinePair&, const ClosestPoint&, const Vector3&) { rows += each; });
+  for_each_touching(now, listed, [&](const LinePair&, const ClosestPoint&, const Vector3&) { rows += each; });
   ForceMeasures out{Eigen::MatrixXd::Zero(rows, 6 * count), Eigen::MatrixXd::Zero(rows, rows)};
   const auto add = [&](Eigen::Index row, int node, double weight, const Vector3& axis, const Vector3& arm) {
-    const Eigen::Index column = 6 * (std::find(nodes, nodes + count, node) - nodes);
+    const Eigen::Index column = 6 * (std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+    assert(column < out.rows.cols());
     out.rows.block<1, 3>(row, column) += weight * axis.transpose();
     out.rows.block<1, 3>(row, column + 3) += weight * arm.cross(axis).transpose();
   };
   Eigen::Index row = 0;
-  for_each_touching(now, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
+  for_each_touching(now, listed, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
     const ContactStation& station = search_.station(pair);
     const ContactLaw law = law_of(pair, stiffening(pair, place, now));
     const ElementWeights weights = line_weights(search_.line().order, place.xi).values;
@@ -384,10 +393,12 @@ ForceMeasures LineContact::measures(const State& state, const double*, const int
 
 DamperTensions LineContact::dampers(const State& state, const double*, const Eigen::VectorXd& rates) const {
   const NodePlaces now(state);
+  const std::vector<int> nodes = nodes_at(state);
+  const ListedNodes listed{nodes.data(), static_cast<int>(nodes.size())};
   const int each = law_.friction > 0 ? 3 : 1;
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
-  for_each_touching(now, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
+  for_each_touching(now, listed, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
     // The damping for slow motions, see contact_push().
     const double rise = hardened({search_.radius_of(pair) - offset.norm(), law_.depth}).slope;
     slopes[row] = 2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.restitution.damping_of_slow_hits() /

@@ -65,9 +65,12 @@ class LineContact : public ForceElement {
   /// Computes the forces of a pair with these nearest places at the beginning and the end of the step.
   LineActing acting(std::size_t index, const ClosestPoint& begin, const ClosestPoint& end, const ForceStep& step,
                     const ListedNodes& listed, bool with_slope) const;
-  /// Calls visit(pair, nearest place, vector from this place to the station's middle) for each pair that touches.
+  /// Returns the nodes on which the element acts in small motions.
+  std::vector<int> nodes_at(const State& state) const;
+  /// Calls visit(pair, nearest place, vector from this place to the station's middle) for each pair that touches with
+  /// listed nodes.
   template <class Visit>
-  void for_each_touching(const NodePlaces& now, const Visit& visit) const;
+  void for_each_touching(const NodePlaces& now, const ListedNodes& listed, const Visit& visit) const;
 
   std::vector<std::string> links_;
   LineSearch search_;

@@ -22,7 +22,15 @@ constexpr double kPassedOver = 0.5;
 /// Stations between two tested ones may be nearer by this part of the radius.
 constexpr double kInBetween = 0.25;
 
+double shortest_of(const ContactLine& line) {
+  return *std::min_element(line.lengths.begin(), line.lengths.end());
+}
+
 }  // namespace
+
+double LineSearch::most_size(const ContactLine& line) {
+  return (kMostNear - kMoreNear) * shortest_of(line);
+}
 
 Vector3 NodePlaces::position(int node) const {
   if (state_) return state_->nodes[node].position;
@@ -40,10 +48,12 @@ LineSearch::LineSearch(LineTouch touch) : touch_(std::move(touch)) {
   for (const LinePair& pair : pairs()) {
     largest_radius_ = std::max(largest_radius_, radius_of(pair));
     largest_arm_ = std::max(largest_arm_, station(pair).arm.norm());
+    middle_arm_ += station(pair).arm / static_cast<double>(pairs().size());
   }
-  const double size = touch_.spacing * static_cast<double>(side().stations.size()) + 2 * largest_arm_;
-  const double shortest = *std::min_element(line().lengths.begin(), line().lengths.end());
-  most_near_ = static_cast<int>(std::min(kMoreNear + std::ceil(size / shortest), 1.0 * kMostNear));
+  for (const LinePair& pair : pairs()) arm_reach_ = std::max(arm_reach_, (station(pair).arm - middle_arm_).norm());
+  const int stations = pairs().empty() ? 0 : pairs().back().station - pairs().front().station;
+  const double size = touch_.spacing * stations + 2 * arm_reach_;
+  most_near_ = static_cast<int>(std::min(kMoreNear + std::ceil(size / shortest_of(line())), 1.0 * kMostNear));
   const int most = static_cast<int>(side().nodes.size()) + most_near_ * (line().order + 1);
   most_nodes_ = std::min(most, static_cast<int>(reach().size()));
   // From one station to the next, the distance to the line changes at most by twice the deformed spacing: the station
@@ -109,8 +119,9 @@ struct LineSearch::Cloud {
 };
 
 LineSearch::Cloud LineSearch::cloud(const NodePlaces& places) const {
-  if (moving_nodes() == 0) return {Vector3::Zero(), largest_arm_};
-  if (is_body()) return {places.position(side().nodes[0]), largest_arm_};
+  if (moving_nodes() == 0) return {middle_arm_, arm_reach_};
+  const int first = side().nodes[0];
+  if (is_body()) return {places.position(first) + places.rotation(first) * middle_arm_, arm_reach_};
   Cloud out{places.position(side().nodes[side().nodes.size() / 2]), 0};
   for (const int node : side().nodes) out.reach = std::max(out.reach, (places.position(node) - out.middle).norm());
   out.reach *= kLebesgue;
@@ -158,6 +169,17 @@ bool LineSearch::is_any_near(int element, double margin, const NodePlaces& place
   return false;
 }
 
+/// Returns the smallest gap between an element and the stations that may touch it [m]; infinity if there are none.
+double LineSearch::least_gap(int element, const NodePlaces& places) const {
+  const LinePiece piece = this->piece(element, places);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < pairs().size(); ++p) {
+    const ClosestPoint found = closest(piece, element, p, middle(station(pairs()[p]), places));
+    if (found.element >= 0) least = std::min(least, std::sqrt(found.square) - radius_of(pairs()[p]));
+  }
+  return least;
+}
+
 LineSearch::Places LineSearch::closest(const Middles& middles, double margin, const NodePlaces& places,
                                        const ListedNodes& listed, const Chosen* only) const {
   Places out;
@@ -183,11 +205,11 @@ LineSearch::Places LineSearch::closest(const Middles& middles, double margin, co
 // ---------------------------------------------------------------- steps
 
 /// Returns a bound of the stations' speeds [m/s].
-double LineSearch::fastest(const Cloud& cloud, const ForceStart& start) const {
+double LineSearch::fastest(const ForceStart& start) const {
   double fastest = 0;
   for (int i = 0; i < moving_nodes(); ++i) {
     const Vector6& motion = start.velocities[side().nodes[i]];
-    fastest = std::max(fastest, is_body() ? motion.head<3>().norm() + motion.tail<3>().norm() * cloud.reach
+    fastest = std::max(fastest, is_body() ? motion.head<3>().norm() + motion.tail<3>().norm() * largest_arm_
                                           : kLebesgue * motion.head<3>().norm());
   }
   return fastest;
@@ -196,7 +218,7 @@ double LineSearch::fastest(const Cloud& cloud, const ForceStart& start) const {
 int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   const NodePlaces places(start.poses);
   const Cloud cloud = this->cloud(places);
-  const double way = kMoreWay * std::abs(start.duration), own = start.duration == 0 ? 0 : fastest(cloud, start);
+  const double way = kMoreWay * std::abs(start.duration), own = start.duration == 0 ? 0 : fastest(start);
   const auto margin_of = [&](int k) {
     // In an equilibrium: elements that a load step may bring into contact.
     if (start.duration == 0) return 4 * largest_radius_ + cloud.reach;
@@ -209,8 +231,10 @@ int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   int found = 0;
   for_each_near(cloud, places, margin_of, [&](int k, double margin) {
     const double distance = std::sqrt(closest_point(piece(k, places), cloud.middle, -1, 1).square);
-    const double beyond = distance - cloud.reach - margin;
-    if (beyond > 0 || (found == most_near_ && beyond >= near[found - 1].first)) return;
+    double beyond = distance - cloud.reach - margin;
+    if (beyond > 0) return;
+    if (start.duration == 0) beyond = least_gap(k, places);  // what touches acts, even if more elements are near
+    if (found == most_near_ && beyond >= near[found - 1].first) return;
     if (start.duration != 0 && !is_any_near(k, margin - largest_radius_, places)) return;
     if (found < most_near_) ++found;
     int at = found - 1;

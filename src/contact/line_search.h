@@ -57,6 +57,8 @@ class LineSearch {
   using Middles = std::array<Vector3, kMostPairs>;
 
   explicit LineSearch(LineTouch touch);
+  /// Returns the size up to which a set of stations touches no more elements of a line than may act in a step [m].
+  static double most_size(const ContactLine& line);
 
   const ContactStations& side() const { return touch_.side; }
   const ContactLine& line() const { return touch_.line; }
@@ -109,7 +111,8 @@ class LineSearch {
   template <class MarginOf, class Visit>
   void for_each_near(const Cloud& cloud, const NodePlaces& places, const MarginOf& margin_of, const Visit& visit) const;
   bool is_any_near(int element, double margin, const NodePlaces& places) const;
-  double fastest(const Cloud& cloud, const ForceStart& start) const;
+  double least_gap(int element, const NodePlaces& places) const;
+  double fastest(const ForceStart& start) const;
 
   LineTouch touch_;
   int most_near_ = 0;  ///< largest number of elements of the line that act in a step
@@ -118,6 +121,9 @@ class LineSearch {
   double between_ = 0;         ///< by how much pairs in between may be nearer [m]
   double largest_radius_ = 0;  ///< largest sum of the radii of a station and the tube [m]
   double largest_arm_ = 0;     ///< largest arm of a station [m]
+  /// The stations of a body are in a ball about this point of it, in the frame of its node [m].
+  Vector3 middle_arm_ = Vector3::Zero();
+  double arm_reach_ = 0;  ///< radius of that ball [m]
 };
 
 }  // namespace flexarm

@@ -4,8 +4,8 @@
     commands.py [--every N] PROGRAM BENCHMARKS
 
 Scenes in config/ and in test/ get all commands. Of all pairs of a hard case of BENCHMARKS (`flexarm bench hard`) and a
-command, every N-th is tried. A command must end by itself, with a status of its own and without a word of a sanitizer. A
-command that uses up its processor time is stopped, which is no failure: sanitizers are slow, and some equilibria are
+command, every N-th is tried. A command must end by itself, with a status of its own and without a word of a sanitizer.
+A command that uses up its processor time is stopped, which is no failure: sanitizers are slow, and some equilibria are
 far away.
 """
 

@@ -403,6 +403,64 @@ TEST(LineContact, AsksForHalvesOfStepsThatItWouldNotSee) {
   EXPECT_FALSE(grazes(1e-6, 0.021 - 1e-11)) << "round-off: what lies alongside would be halved for ever";
 }
 
+/// A line of elements of order 1 along x, 0.1 m long each, and two balls a half metre apart, at a node or in the world.
+struct TwoBallsAndLine {
+  TwoBallsAndLine(bool is_body, const Vector3& middle, const Vector3& arm) {
+    LineTouch touch;
+    constexpr int kElements = 60;
+    for (int i = 0; i <= kElements; ++i) poses.push_back(node_at({0.1 * i, 0, 0}, Quaternion::Identity()));
+    touch.line.order = 1;
+    for (int i = 0; i < kElements; ++i) touch.line.elements.push_back({i, i + 1});
+    touch.line.lengths.assign(kElements, 0.1);
+    touch.line.radius = 0.01;
+    if (is_body) poses.push_back(node_at(middle, Quaternion::Identity()));
+    touch.side.nodes = {is_body ? kElements + 1 : -1};
+    for (const double x : {-0.25, 0.25}) {
+      ContactStation ball;
+      ball.arm = arm + Vector3(x, 0, 0) + (is_body ? Vector3(Vector3::Zero()) : middle);
+      ball.radius = 0.02;
+      touch.pairs.push_back({static_cast<int>(touch.side.stations.size()), {}, {}});
+      touch.side.stations.push_back(ball);
+    }
+    element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, touch, gripping_law(0.1, 0.5));
+  }
+
+  Poses poses;
+  std::unique_ptr<LineContact> element;
+};
+
+// The nodes of small motions are those that the stations touch, wherever stations are relative to their node or to the
+// world's origin, and however many elements are between them.
+TEST(LineContact, MeasuresTheStationsThatTouch) {
+  for (const bool is_body : {true, false})
+    for (const Vector3& arm : {Vector3(0, 0, 0), Vector3(-3, 0, 0), Vector3(0, 2, 1)}) {
+      const TwoBallsAndLine scene(is_body, Vector3(3.05, 0, 0.029) - arm, arm);
+      const State state = state_at(scene.poses);
+      std::vector<int> nodes(scene.element->most_nodes());
+      const std::vector<Vector6> at_rest(scene.poses.size(), Vector6::Zero());
+      nodes.resize(scene.element->find_nodes({scene.poses, at_rest}, nodes.data()));
+      const ForceMeasures measures = scene.element->measures(state, nullptr, nodes.data());
+      ASSERT_EQ(measures.rows.rows(), 6) << is_body << arm.transpose();
+      ASSERT_EQ(measures.rows.cols(), 6 * static_cast<Eigen::Index>(nodes.size()));
+      // The balls are over the line's nodes 28 and 33, so each normal measure is the height over one of these.
+      for (const auto& [row, below] : {std::pair<Eigen::Index, int>(0, 28), {3, 33}}) {
+        Eigen::VectorXd expected = Eigen::VectorXd::Zero(measures.rows.cols());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+          const auto at = 6 * static_cast<Eigen::Index>(i);
+          if (nodes[i] == below) expected[at + 2] = -1;
+          if (nodes[i] == 61) {
+            expected[at + 2] = 1;
+            expected.segment<3>(at + 3) = (arm + Vector3(row == 0 ? -0.25 : 0.25, 0, 0)).cross(Vector3::UnitZ());
+          }
+        }
+        EXPECT_LE((measures.rows.row(row).transpose() - expected).norm(), 1e-12) << is_body << arm.transpose();
+      }
+      const DamperTensions dampers = scene.element->dampers(state, nullptr, Eigen::VectorXd::Ones(6));
+      EXPECT_GT(dampers.tension[0], 0);
+      EXPECT_GT(dampers.tension[3], 0);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Contact, LineContacts, ::testing::Bool(),
                          [](const auto& info) { return info.param ? "Rest" : "Means"; });
 

@@ -26,7 +26,8 @@ std::vector<double> read_track(const std::string& bytes, std::size_t count) {
   EXPECT_EQ(bytes.size(), 16 + 2 * count);
   std::uint16_t step = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto low = static_cast<unsigned char>(bytes[16 + i]), high = static_cast<unsigned char>(bytes[16 + count + i]);
+    const auto low = static_cast<unsigned char>(bytes[16 + i]),
+               high = static_cast<unsigned char>(bytes[16 + count + i]);
     step = static_cast<std::uint16_t>(step + low + 256 * high);
     out[i] = step == 65535 ? kGap : least + (most - least) * (step / 65534.0);
   }

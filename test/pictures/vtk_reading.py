@@ -45,7 +45,7 @@ TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 
 
 def simulate(scene, *options):
     command = [os.environ["FLEXARM_PROGRAM"], "simulate", "--quiet", str(scene)] + [str(option) for option in options]
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=1000,
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=999,
                           check=False)
 
 
