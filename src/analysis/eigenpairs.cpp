@@ -47,11 +47,17 @@ class UndampedOperation : public LinearOperation {
 };
 
 /// Makes the problem linear by a second unknown z = lambda x / s. The operation {x, z} -> {p, q} is (K + s D + s^2 M) p
-/// = -(s D + s^2 M) x - s^2 M z,  q = x + p. Its eigenvalues are 1/(lambda/s - 1).
+/// = -(s D + s^2 M) x - s^2 M z,  q = x + p. Its eigenvalues are 1/(lambda/s - 1). Parts of x along free motions F have
+/// no effect on z, so they are dropped: p becomes p - F F^T M p. Otherwise lambda = 0 would be a multiple eigenvalue
+/// with few eigenvectors, which round-off splits by its square root.
 class DampedOperation : public LinearOperation {
  public:
-  DampedOperation(const LinearisedMotion& motion, double shift)
-      : motion_(motion), shift_(shift), solver_(motion, shift, shift * shift) {}
+  DampedOperation(const LinearisedMotion& motion, const Eigen::MatrixXd& free, double shift)
+      : motion_(motion),
+        free_(free),
+        mass_free_(motion.mass() * free),
+        shift_(shift),
+        solver_(motion, shift, shift * shift) {}
   Eigen::Index rows() const override { return 2 * motion_.unknowns(); }
   void apply(const double* in, double* out) const override {
     const Eigen::Index n = motion_.unknowns();
@@ -59,10 +65,19 @@ class DampedOperation : public LinearOperation {
     auto p = Eigen::VectorXd::Map(out, n), q = Eigen::VectorXd::Map(out + n, n);
     p = -solver_.solve(shift_ * (motion_.damping() * x) + shift_ * shift_ * (motion_.mass() * (x + z)));
     q = x + p;
+    p -= free_ * (mass_free_.transpose() * p);
+  }
+  /// The motion to which an eigenvector belongs, of any length: lambda x / s. Along free motions this is z.
+  Eigen::VectorXcd motion_of(const Eigenpair& pair) const {
+    const Eigen::VectorXcd x = pair.vector.head(motion_.unknowns()), z = pair.vector.tail(motion_.unknowns());
+    const Eigen::VectorXcd motion = (1.0 + 1.0 / pair.value) * x + free_ * (mass_free_.transpose() * z);
+    return motion.isZero(0) ? x : motion;
   }
 
  private:
   const LinearisedMotion& motion_;
+  const Eigen::MatrixXd& free_;
+  Eigen::MatrixXd mass_free_;
   double shift_;
   ShiftedSolver solver_;
 };
@@ -77,11 +92,13 @@ std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shi
   return pairs;
 }
 
-std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, double shift, int count) {
+std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, const Eigen::MatrixXd& free, double shift,
+                                    int count) {
   assert(!(shift <= 0) && count >= 1);
+  const DampedOperation operation(motion, free, shift);
   std::vector<Eigenpair> pairs =
-      largest_eigenpairs(DampedOperation(motion, shift), count, motion.unknowns() <= kDenseLimit, Crowded::LeaveOut);
-  for (Eigenpair& pair : pairs) pair = {shift * (1.0 + 1.0 / pair.value), pair.vector.head(motion.unknowns())};
+      largest_eigenpairs(operation, count, motion.unknowns() <= kDenseLimit, Crowded::LeaveOut);
+  for (Eigenpair& pair : pairs) pair = {shift * (1.0 + 1.0 / pair.value), operation.motion_of(pair)};
   return pairs;
 }
 

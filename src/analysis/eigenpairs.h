@@ -13,7 +13,11 @@ std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shi
 /// The `count` pairs of (lambda^2 M + lambda D + K) phi = 0 with lambda nearest to `shift` [1/s], nearest first;
 /// shift > 0. Stiffness-proportional damping eta makes eigenvalues crowd at -1/eta. For large models, those that the
 /// iteration cannot separate are left out.
+/// `free`: motions with K phi = 0, orthonormal in M. The positions along them have no effect, so that their eigenvalues
+/// 0 are left out; 2 freedoms() - `free`.cols() pairs remain. Of these, motions along `free` without damping have the
+/// eigenvalue 0.
 /// @throws std::runtime_error as undamped_pairs().
-std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, double shift, int count);
+std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, const Eigen::MatrixXd& free, double shift,
+                                    int count);
 
 }  // namespace flexarm

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/falling.h"
 #include "math/least_squares.h"
 #include "math/picked.h"
 #include "math/so3.h"
@@ -90,6 +91,13 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
     system_.hold_rotors();
   }
   choose_independent();
+  Fall fall;
+  if (reference == Reference::Rest) {
+    system_.begin_equilibrium(state_, 1);
+    if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+    fall = fall_of(model, dof_, state_, system_.residual());  // `model` knows which coordinates are driven
+    wrenches_.insert(wrenches_.end(), fall.inertia.begin(), fall.inertia.end());
+  }
   const Eigen::Index count = static_cast<Eigen::Index>(independent_.size());
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(count), accelerations = rates;
   if (reference == Reference::Instant) rates = picked_rows(coordinates_of(known), independent_);
@@ -111,6 +119,9 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
     assemble();
   }
   add_rotors(reference);
+  for (const auto& [scalar, acceleration] : fall.accelerations)
+    if (const auto place = std::find(scalars_.begin(), scalars_.end(), scalar); place != scalars_.end())
+      rates_.second[place - scalars_.begin()] = acceleration;
 }
 
 Eigen::VectorXd LinearDynamics::coordinates_of(const KnownRates& known) const {

@@ -14,7 +14,7 @@ namespace flexarm {
 
 /// The motion about which a mechanism is linearised.
 enum class Reference {
-  Rest,    ///< the configuration as it is, without velocities, under the loads at time 0
+  Rest,    ///< the configuration as it is, without velocities, under the loads at time 0; what nothing carries falls
   Steady,  ///< driven joints move as at time 0; the others stand still where loads at time 0 balance
   Instant  ///< the motion as it is
 };

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "analysis/element_matrices.h"
+#include "analysis/falling.h"
 #include "integrators/force_elements.h"
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
@@ -36,14 +37,17 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
       stiffness_(system_.tangent().matrix()),
       damping_(model, dof_),
       mass_(model, dof_) {
-  system_.begin_equilibrium(state, 1.0);
-  if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
-  find_multipliers();
+  balance();
+  const Fall fall = fall_of(model, dof_, state_, system_.residual());
+  if (!fall.inertia.empty()) {
+    state_.wrenches.insert(state_.wrenches.end(), fall.inertia.begin(), fall.inertia.end());
+    balance();
+  }
   set_joint_maps();
-  for (SparseTangent* tangent : {&damping_, &mass_}) couple_force_elements(model, state, *tangent);
+  for (SparseTangent* tangent : {&damping_, &mass_}) couple_force_elements(model, state_, *tangent);
   assemble_damping();
   assemble_mass();
-  matrices_ = with_rotors(model, dof_, state, system_.actuators(), stiffness_, damping_, mass_);
+  matrices_ = with_rotors(model, dof_, state_, system_.actuators(), stiffness_, damping_, mass_);
 }
 
 int LinearisedMotion::freedoms() const {
@@ -67,6 +71,12 @@ LinearisedMotion::Matrix LinearisedMotion::matrix(const std::vector<double>& ext
 bool LinearisedMotion::is_damped() const {
   const Matrix values = damping();
   return std::any_of(values.valuePtr(), values.valuePtr() + values.nonZeros(), [](double value) { return value != 0; });
+}
+
+void LinearisedMotion::balance() {
+  system_.begin_equilibrium(state_, 1.0);
+  if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+  find_multipliers();
 }
 
 /// Sets the multipliers of loops so that they balance the residual best, since their forces stiffen the mechanism as

@@ -38,8 +38,8 @@ class LinearisedMotion {
  public:
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-  /// Linearises about the configuration of `state`, under the loads at time 0. `model` and `state` must outlive this
-  /// object. `contact_time`: see exact_equilibrium().
+  /// Linearises about the configuration of `state`, under the loads at time 0. Parts that nothing carries fall along
+  /// (see Fall). `model` must outlive this object. `contact_time`: see exact_equilibrium().
   /// @throws std::runtime_error if the stiffness is not finite.
   LinearisedMotion(const Model& model, const State& state, double contact_time);
 
@@ -78,6 +78,7 @@ class LinearisedMotion {
   bool has_rotors() const { return !matrices_.column_starts.empty(); }
   /// `extended` if there are rotors, else `own`.
   Matrix matrix(const std::vector<double>& extended, const SparseTangent& own) const;
+  void balance();
   void find_multipliers();
   void set_joint_maps();
   double& diagonal(SparseTangent& tangent, int joint, int component) const;
@@ -88,7 +89,7 @@ class LinearisedMotion {
   std::vector<Vector6> node_motion(const std::vector<double>& scalars) const;
 
   const Model& model_;
-  const State& state_;
+  State state_;  // with the inertia of what falls among its wrenches
   const double contact_time_;
   StepSystem system_;
   const DegreesOfFreedom& dof_;

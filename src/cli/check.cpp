@@ -270,14 +270,19 @@ void print_frequencies(Simulation& simulation) {
         "\nnatural frequencies are not computed, since they would take long here; flexarm modes computes them\n");
     return;
   }
-  // Asks for as many more modes as there may be free motions, since these say nothing about the beams.
-  const auto [modes, is_equilibrium] =
-      modes_about_equilibrium(simulation, kModes + static_cast<int>(simulation.coordinate_names().size()));
+  auto [modes, is_equilibrium] = modes_about_equilibrium(simulation, kModes);
+  // Free motions and slow decays come first, and say nothing about the beams. There may be as many as coordinates; few are
+  // found faster.
+  const auto oscillates = [](const Mode& mode) { return mode.frequency > 0 && mode.rate <= 0; };
+  const int most = kModes + 2 * static_cast<int>(simulation.coordinate_names().size());
+  for (int count = kModes; count < most && std::count_if(modes.begin(), modes.end(), oscillates) < kModes;) {
+    count = std::min(2 * count, most);
+    modes = simulation.natural_modes(count);
+  }
   fmt::print("\n");
   print_where(simulation, is_equilibrium);
   std::vector<Mode> oscillating;
-  std::copy_if(modes.begin(), modes.end(), std::back_inserter(oscillating),
-               [](const Mode& m) { return m.frequency > 0 && m.rate <= 0; });
+  std::copy_if(modes.begin(), modes.end(), std::back_inserter(oscillating), oscillates);
   std::sort(oscillating.begin(), oscillating.end(),
             [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
   oscillating.resize(std::min<std::size_t>(oscillating.size(), kModes));

@@ -1,15 +1,17 @@
 #pragma once
 /// Writes values as JSON.
 
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
 
 namespace flexarm {
 
-/// With 17 significant digits, so that the number can be read back exactly.
+/// With 17 significant digits, so that the number can be read back exactly. JSON has no number that is not finite:
+/// null.
 inline std::string json_number(double value) {
-  return fmt::format("{:.17g}", value);
+  return std::isfinite(value) ? fmt::format("{:.17g}", value) : "null";
 }
 
 inline std::string json_string(const std::string& text) {

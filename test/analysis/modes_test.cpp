@@ -204,6 +204,68 @@ TEST(DampedModes, UndampedMotionsBesideDampedOnes) {
   EXPECT_EQ(damped, 1);
 }
 
+// A gimbal without stiffness: the inner axis leans by 0.5 rad to the outer one. An outer damper d feels the inertia
+// that is left about its axis while the inner joint is free, I_r sin^2 0.5 with I_r about a diameter of the disc,
+// whatever the disc's polar inertia.
+TEST(DampedModes, CoupledInertiaWithoutStiffness) {
+  struct Disc {
+    double radial, polar, damping;
+  };
+  for (const Disc& disc : {Disc{1e-4, 2e-4, 0.1}, Disc{1, 1, 0.5}, Disc{1, 1e3, 1e-6}}) {
+    SceneBuilder builder;
+    const Vector3 axis(std::sin(0.5), 0, std::cos(0.5));
+    builder.scene.links.emplace_back();
+    builder.scene.links.back().name = "fork";
+    builder.body("disc", 1, Vector3::Zero(),
+                 disc.radial * Matrix3::Identity() + (disc.polar - disc.radial) * axis * axis.transpose());
+    builder.joint("outer", scene::JointKind::Continuous, "world", "fork", Vector3::Zero(), Vector3::UnitZ()).damping =
+        disc.damping;
+    builder.joint("inner", scene::JointKind::Continuous, "fork", "disc", Vector3::Zero(), axis);
+    const Model model = build_model(builder.scene);
+    const std::vector<Mode> modes = natural_modes(model, initial_state(model), 6);
+    ASSERT_EQ(modes.size(), 3u) << disc.damping;
+    EXPECT_TRUE(modes[0].is_free());
+    EXPECT_TRUE(modes[1].is_free());
+    const double expected = -disc.damping / (disc.radial * std::pow(std::sin(0.5), 2));
+    EXPECT_NEAR(modes[2].rate / expected, 1, 1e-9);
+    EXPECT_EQ(modes[2].damping_ratio(), 1);
+  }
+}
+
+// A falling body does not feel its weight, wherever the origin of its link is.
+TEST(NaturalModes, FallingBodyHasSixFreeMotions) {
+  for (const Vector3& center : {Vector3(0, 0, 0), Vector3(0.05, 0, 0.054), Vector3(-0.3, 2, 0.1)}) {
+    SceneBuilder builder;
+    builder.scene.gravity = Vector3(0, 0, -9.81);
+    builder.body("drone", 1.325, center, Vector3(0.04, 0.03, 0.06).asDiagonal());
+    builder.joint("free", scene::JointKind::Floating, "world", "drone");
+    const Model model = build_model(builder.scene);
+    const std::vector<Mode> modes = natural_modes(model, initial_state(model), 8);
+    ASSERT_EQ(modes.size(), 6u);
+    for (const Mode& mode : modes) EXPECT_TRUE(mode.is_free()) << center.transpose();
+  }
+}
+
+// A pendulum whose pivot falls does not swing; one whose pivot a spring carries does.
+TEST(NaturalModes, PendulumOnAFallingSlider) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0, -9.81);
+  builder.body("slider", 3, Vector3::Zero(), 0.1 * Matrix3::Identity());
+  builder.body("bob", 2, Vector3(0, 0, -0.5), 0.1 * Matrix3::Identity());
+  builder.joint("rail", scene::JointKind::Prismatic, "world", "slider", Vector3::Zero(), Vector3::UnitZ());
+  builder.joint("hinge", scene::JointKind::Continuous, "slider", "bob", Vector3::Zero(), Vector3::UnitY());
+  const Model falling = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(falling, initial_state(falling), 2);
+  ASSERT_EQ(modes.size(), 2u);
+  for (const Mode& mode : modes) EXPECT_TRUE(mode.is_free());
+  builder.scene.efforts.push_back({"rail", TimeFunction(5 * 9.81), {}});  // carries both
+  const Model carried = build_model(builder.scene);
+  const std::vector<Mode> swinging = natural_modes(carried, initial_state(carried), 2);
+  ASSERT_EQ(swinging.size(), 2u);
+  EXPECT_TRUE(swinging[0].is_free());
+  EXPECT_NEAR(2 * kPi * swinging[1].frequency, std::sqrt(2 * 9.81 * 0.5 / (0.1 + 2 * 0.25)), 1e-9);
+}
+
 TEST(NaturalModes, NothingMovesOrNothingAsked) {
   SceneBuilder builder;
   builder.body("block", 2.0, Vector3::Zero(), Matrix3::Identity());

@@ -71,6 +71,72 @@ def test_modes():
         simulation.natural_modes(0)
 
 
+def floating_robot(seed):
+    """The text of a scene: a floating base with two to six joints in a chain, some of them damped, some with springs."""
+    draw = numpy.random.RandomState(seed)
+    vector = lambda size: " ".join("%.17g" % x for x in draw.uniform(-size, size, 3))  # noqa: E731
+    inertial = lambda: """<inertial> <origin xyz="%s" rpy="%s"/> <mass value="%.17g"/> <inertia ixx="%.17g" iyy="%.17g"
+      izz="%.17g" ixy="0" ixz="0" iyz="0"/> </inertial>""" % (  # noqa: E731
+        vector(0.3), vector(3), draw.uniform(0.2, 5), *draw.uniform(0.02, 0.03, 3))
+    parts, springs = ['<link name="0"> %s </link>' % inertial()], []
+    for i in range(draw.randint(2, 7)):
+        damping = draw.choice([0, 1]) * draw.uniform(0.05, 0.3)
+        parts.append("""<joint name="j%d" type="continuous"> <parent link="%d"/> <child link="%d"/> <axis xyz="%s"/>
+          <origin xyz="%s"/> <dynamics damping="%.17g"/> </joint> <link name="%d"> %s </link>""" % (
+              i, i, i + 1, vector(1), vector(0.5), damping, i + 1, inertial()))
+        if draw.rand() < 0.5:
+            springs.append('<spring joint="j%d" stiffness="%.17g"/>' % (i, draw.uniform(1, 50)))
+    return """<robot name="robot"> %s %s <simulation> <root type="floating"/> </simulation> </robot>""" % (
+        " ".join(parts), " ".join(springs))
+
+
+@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.filterwarnings("ignore")
+def test_modes_are_those_of_the_linear_model(seed):
+    """A falling robot: eigenvalues of M, D and K, without those that are 0, by scipy. Gravity has no effect on them."""
+    scipy_linalg = pytest.importorskip("scipy.linalg")
+    text = floating_robot(seed)
+    simulation = flexarm.Simulation(flexarm.read_scene_text(text))
+    model = simulation.linearise()
+    size = len(model.coordinates)
+    m, d, k = model.mass, model.damping, model.stiffness
+    without = flexarm.Simulation(flexarm.read_scene_text(text.replace(
+        '<root type="floating"/>', '<root type="floating"/> <gravity xyz="0 0 0"/>')))
+    numpy.testing.assert_allclose(k, without.linearise().stiffness, atol=1e-12 * max(1, abs(k).max()))
+    first = numpy.block([[numpy.zeros((size, size)), numpy.eye(size)], [-k, -d]])
+    second = scipy_linalg.block_diag(numpy.eye(size), m)
+    # Motions without stiffness and damping have double eigenvalues 0, which round-off splits by its square root.
+    expected = scipy_linalg.eigvals(first, second)
+    scale = abs(expected).max()
+    expected = sorted(expected[expected.imag > -1e-9 * scale], key=abs)
+    modes = simulation.natural_modes(2 * size)
+    found = sorted((complex(mode.rate, 2 * math.pi * mode.frequency) for mode in modes
+                    if mode.rate or mode.frequency), key=abs)
+    assert all(mode.rate <= 0 for mode in modes)
+    expected = [value for value in expected if abs(value) > 1e-5 * scale]
+    assert len(found) == len(expected)
+    for value, own in zip(expected, found):
+        assert abs(own - value) < 1e-7 * abs(value)
+    poles = [pole for pole in model.poles() if pole]
+    assert len(poles) == len(found)
+    for pole, own in zip(sorted(poles, key=abs), found):
+        assert abs(own - pole) < 1e-9 * abs(own)
+
+
+def test_falling_models():
+    """The reference of a falling robot's model falls: x' of the reference is gravity."""
+    text = """<robot name="drone"> <link name="body"> <inertial> <origin xyz="0.05 0 0.054"/> <mass value="1.325"/>
+      <inertia ixx="0.04" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.06"/> </inertial> </link>
+      <simulation> <root type="floating"/> </simulation> </robot>"""
+    simulation = flexarm.Simulation(flexarm.read_scene_text(text))
+    model = simulation.linearise([], ["position:body"])
+    assert not model.stiffness.any() and not model.poles().any()
+    falls = numpy.zeros(12)
+    falls[8] = -9.81
+    numpy.testing.assert_allclose(model.drift, falls, atol=1e-12)
+    assert [mode.frequency for mode in simulation.natural_modes(6)] == 6 * [0]
+
+
 def test_linear_models():
     with open(example("rigid_double_pendulum"), encoding="utf-8") as file:
         text = file.read().replace('<dynamics damping="0.01" friction="0.002"/>', '<dynamics damping="0.1"/>')
