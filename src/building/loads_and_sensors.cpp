@@ -1,6 +1,7 @@
 #include "building/passes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "building/model_builder.h"
@@ -120,17 +121,22 @@ bool measures_section(SensorKind kind) {
 }
 
 /// The joint whose reaction a sensor measures: the one that carries the link, or the loop joint that the sensor names.
-ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::Sensor& sensor, const LinkFrame& link,
+ReactionPlace reaction_place(const ScenePlan& plan, const scene::Sensor& sensor, const LinkFrame& link,
                              const Mechanism& mechanism, const Model& model) {
   ReactionPlace place;
-  place.link = link.frame;
+  // On a flexible link this is a point beside the nearest node; the sensor's own point follows (sensed_wrench()).
+  place.point = attachment(plan, model, sensor.link, sensor.at);
+  place.point.offset = place.point.offset * Pose{sensor.at, Quaternion::Identity()};
   if (sensor.joint.empty()) {
     place.joint = mechanism.slave_joint[link.frame.node];
     return place;
   }
-  const auto& joints = scene.loop_joints;
+  const auto& joints = plan.scene.loop_joints;
   const auto joint =
       std::find_if(joints.begin(), joints.end(), [&](const auto& each) { return each.name == sensor.joint; });
+  if (joint == joints.end())
+    throw ModelError(at(sensor.location, "<sensor> '" + sensor.name + "'") + "there is no loop joint '" + sensor.joint +
+                     "'");
   const auto set_side = [&](bool is_reversed) { place.is_reversed = (sensor.link != joint->child) != is_reversed; };
   for (const JointChain& chain : mechanism.loop_joints) {
     if (chain.joint->name != sensor.joint) continue;
@@ -142,9 +148,7 @@ ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::
     place.closure = static_cast<int>(k);
     set_side(model.closures[k].is_reversed);
   }
-  if (place.joint < 0 && place.closure < 0)
-    throw ModelError(at(sensor.location, "<sensor> '" + sensor.name + "'") + "there is no loop joint '" + sensor.joint +
-                     "'");
+  assert(place.joint >= 0 || place.closure >= 0);
   return place;
 }
 
@@ -157,7 +161,7 @@ std::size_t tendon_of(const scene::SceneDescription& scene, const scene::Sensor&
   return found;
 }
 
-/// Index into Model::reactions. Sensors of the same reaction share an entry.
+/// Index into Model::reactions. Sensors of the same reaction at the same point share an entry.
 int index_of(const ReactionPlace& place, Model& model) {
   const auto same = std::find(model.reactions.begin(), model.reactions.end(), place);
   const auto index = static_cast<int>(same - model.reactions.begin());
@@ -183,7 +187,7 @@ void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& mod
       throw ModelError(where + "no joint carries the root link '" + sensor.link + "'");
     SensorPlace place{probe_point(plan, model, sensor.link, sensor.at)};
     if (measures_reaction(sensor.kind))
-      place.reaction = index_of(reaction_place(plan.scene, sensor, model.links[link], mechanism, model), model);
+      place.reaction = index_of(reaction_place(plan, sensor, model.links[link], mechanism, model), model);
     if (sensor.kind == SensorKind::Tendon) place.force_element = tendon_of(plan.scene, sensor);
     model.sensors.push_back(place);
   }

@@ -27,9 +27,9 @@ Vector6 ExplicitReactions::transmitted(const ReactionPlace& place, const Articul
   const bool closes = place.closure >= 0;
   const int node = closes ? model_.closures[place.closure].child : model_.joints[place.joint].slave;
   const Vector6& wrench = closes ? closures[place.closure] : bodies.transmitted(place.joint);
-  const Vector3 link =
-      position_of(bodies, place.link.node) + rotation_of(bodies, place.link.node) * place.link.offset.position;
-  return (place.is_reversed ? -1 : 1) * about(wrench, link - bodies.position(node));
+  const Vector3 point =
+      position_of(bodies, place.point.node) + rotation_of(bodies, place.point.node) * place.point.offset.position;
+  return (place.is_reversed ? -1 : 1) * about(wrench, point - bodies.position(node));
 }
 
 double ExplicitReactions::held_effort(const HeldJoint& held, const ArticulatedBodies& bodies,

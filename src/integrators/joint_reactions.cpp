@@ -22,8 +22,8 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
     weight = configuration_.effort_weight();
   }
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {
-    const NodePose link = place.link.node < 0 ? NodePose() : nodes[place.link.node];
-    return Vector3(link.position - nodes[node].position + link.rotation * place.link.offset.position);
+    const NodePose carrier = place.point.node < 0 ? NodePose() : nodes[place.point.node];
+    return Vector3(carrier.position - nodes[node].position + carrier.rotation * place.point.offset.position);
   };
   const Vector3 arm = end * arm_in(configuration_.end()) + (1 - end) * arm_in(configuration_.begin());
   wrench.tail<3>() -= arm.cross(wrench.head<3>());

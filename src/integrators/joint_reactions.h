@@ -8,9 +8,9 @@
 namespace flexarm {
 
 /// When everything outboard of a slave is folded, the residual of the slave is the wrench by its joint. This wrench
-/// equals exactly the rate of momentum of everything outboard in the step, minus its loads. Moments are about the
-/// origin of the link that the slave carries. For a loop joint, multipliers give the wrench on the closure's child
-/// directly; the other link gets the opposite wrench.
+/// equals exactly the rate of momentum of everything outboard in the step, minus its loads. For a loop joint,
+/// multipliers give the wrench on the closure's child directly; the other link gets the opposite wrench. Moments are
+/// about a point of the link, in the same step: so a hinge has none about its axis if the point is on it.
 class JointReactions {
  public:
   JointReactions(const StepConfiguration& configuration, const LoopMultipliers& loops)
@@ -20,7 +20,7 @@ class JointReactions {
   void accept(const ReducedResidual& residual, State& state) const;
   /// The same for an equilibrium.
   void accept_rest(const ReducedResidual& residual, State& state) const;
-  /// {force, moment about the link's origin} over the step, or at its end in the Newmark family; world axes [N, N m].
+  /// {force, moment about `place.point`} over the step, or at its end in the Newmark family; world axes [N, N m].
   /// @param residual  as it is after the step
   Vector6 transmitted(const ReducedResidual& residual, const ReactionPlace& place) const;
 

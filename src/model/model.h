@@ -129,11 +129,11 @@ struct ReactionPlace {
   int joint = -1;            ///< elementary joint; -1: it is a closure
   int closure = -1;          ///< loop closure, if `joint` is -1
   bool is_reversed = false;  ///< the reaction is that on the other link
-  Attachment link;           ///< frame of the link; moments are about its origin
+  Attachment point;          ///< of the link; moments are about the origin of this frame
 
   bool operator==(const ReactionPlace& other) const {
     return joint == other.joint && closure == other.closure && is_reversed == other.is_reversed &&
-           link.node == other.link.node && link.offset.position == other.link.offset.position;
+           point.node == other.point.node && point.offset.position == other.point.offset.position;
   }
 };
 

@@ -8,6 +8,7 @@
 #include "model/carried_origin.h"
 #include "scene/joint_kind_names.h"
 #include "simulation/inside.h"
+#include "simulation/observables.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm::pictures {
@@ -102,14 +103,15 @@ void RecordedArrows::find_reactions(std::size_t row, const Simulation& shown, st
   out.clear();
   for (const auto& [index, link, columns] : reactions_) {
     const scene::Sensor& sensor = shown.scene().sensors[index];
-    const Pose pose = shown.link_pose(link);
-    const Quaternion axes =
-        sensor.kind == scene::SensorKind::Wrench ? pose.orientation : Quaternion::Identity();  // else the world's
+    const Quaternion axes = sensor.kind == scene::SensorKind::Wrench ? shown.link_pose(link).orientation
+                                                                     : Quaternion::Identity();  // else the world's
     const auto vector = [&](std::size_t k) {
       return Vector3(columns_.value(row, columns[k]), columns_.value(row, columns[k + 1]),
                      columns_.value(row, columns[k + 2]));
     };
-    out.push_back({pose * sensor.at, {axes * vector(0), axes * vector(3)}});
+    const Vector3 place =
+        pose_in_world(model_of(shown), state_of(shown), model_of(shown).sensors[index].point).position;
+    out.push_back({place, {axes * vector(0), axes * vector(3)}});
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "math/normal_noise.h"
 #include "math/so3.h"
+#include "model/carried_origin.h"
 #include "simulation/observables.h"
 #include "simulation/touching.h"
 
@@ -52,20 +53,19 @@ Pose link_pose(const SensorPlace& place, const MotionView& view) {
 }
 
 Vector6 measured_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view) {
-  const Wrench wrench = transmitted_wrench(view.state, place.reaction);
-  const Pose link = link_pose(place, view);
-  const Vector3 arm = link.orientation * sensor.at;
-  const Quaternion axes = sensor.kind == SensorKind::Wrench ? link.orientation.conjugate() : Quaternion::Identity();
+  const Wrench wrench = sensed_wrench(view.model, view.state, place);
+  const Quaternion axes =
+      sensor.kind == SensorKind::Wrench ? link_pose(place, view).orientation.conjugate() : Quaternion::Identity();
   Vector6 out;
-  out << axes * wrench.force, axes * Vector3(wrench.moment - arm.cross(wrench.force));
+  out << axes * wrench.force, axes * wrench.moment;
   return out;
 }
 
 /// The sum of the wrenches of all contacts.
-Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view,
-                        PublishedMotion& motion) {
-  const Pose link = link_pose(place, view);
-  const Vector3 about = link * sensor.at;
+Vector6 touching_wrench(const SensorPlace& place, const MotionView& view, PublishedMotion& motion) {
+  // Touching points are relative to the state's origin, also if the sensor is on the world, which is not.
+  const Vector3 about = probe_pose(view.model, view.state, place.point).position +
+                        probe_origin(view.model, view.state, place.point) - world_origin(view.model, view.state);
   Wrench sum;
   for (const auto& [pair, is_first] : place.touched) {
     const double sign = is_first ? 1 : -1;
@@ -75,7 +75,7 @@ Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const Mo
       sum.moment += (point.position - about).cross(force) + sign * point.couple;
     });
   }
-  const Quaternion axes = link.orientation.conjugate();
+  const Quaternion axes = link_pose(place, view).orientation.conjugate();
   Vector6 out;
   out << axes * sum.force, axes * sum.moment;
   return out;
@@ -115,7 +115,7 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
       sample.values[0] = fibre_strain(view.model, view.state, place.point) + errors[0];
       return;
     case SensorKind::Contact:
-      return set(touching_wrench(sensor, place, view, motion));
+      return set(touching_wrench(place, view, motion));
     case SensorKind::Imu:
       return set(measured_motion(place, view, motion));
     case SensorKind::Tendon: {
@@ -132,13 +132,19 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
 
 }  // namespace
 
-Wrench transmitted_wrench(const State& state, int reaction) {
+Wrench transmitted_wrench(const Model& model, const State& state, int reaction, const Vector3& about) {
   Wrench wrench;
   for (int k = 0; k < 3; ++k) {
     wrench.force[k] = state.transmitted.at_end(6 * static_cast<std::size_t>(reaction) + k);
     wrench.moment[k] = state.transmitted.at_end(6 * static_cast<std::size_t>(reaction) + 3 + k);
   }
+  const Vector3 way = about - attached_pose(state, model.reactions[reaction].point).position;
+  wrench.moment -= way.cross(wrench.force);
   return wrench;
+}
+
+Wrench sensed_wrench(const Model& model, const State& state, const SensorPlace& place) {
+  return transmitted_wrench(model, state, place.reaction, probe_pose(model, state, place.point).position);
 }
 
 void take_samples(const std::vector<Sensor>& sensors, const MotionView& view, PublishedMotion& motion, bool all,

@@ -337,14 +337,12 @@ BeamPoint Simulation::section(std::size_t link, double arc_length) const {
 Wrench Simulation::reaction(std::size_t link) const {
   const Model& model = implementation_->model;
   const std::string& name = entry(model.links, link, "link").name;
-  const auto place = std::find_if(model.sensors.begin(), model.sensors.end(), [&](const SensorPlace& sensor) {
-    if (sensor.reaction < 0 || sensor.point.link != static_cast<int>(link)) return false;
-    const ReactionPlace& place = model.reactions[sensor.reaction];
-    return place.joint >= 0 && model.joints[place.joint].slave == place.link.node;
-  });
-  if (place == model.sensors.end())
-    throw std::invalid_argument("the scene has no sensor of kind reaction or wrench for link '" + name + "'");
-  return transmitted_wrench(implementation_->state, place->reaction);
+  const std::vector<scene::Sensor>& sensors = implementation_->scene.sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (sensors[i].link == name && sensors[i].joint.empty() && model.sensors[i].reaction >= 0)
+      return transmitted_wrench(model, implementation_->state, model.sensors[i].reaction,
+                                attached_pose(implementation_->state, model.links[link].frame).position);
+  throw std::invalid_argument("the scene has no sensor of kind reaction or wrench for link '" + name + "'");
 }
 ActingWrench Simulation::sensed_wrench(std::size_t sensor) const {
   const Implementation& s = *implementation_;
@@ -352,10 +350,7 @@ ActingWrench Simulation::sensed_wrench(std::size_t sensor) const {
   if (place.reaction < 0)
     throw std::invalid_argument("sensor '" + s.scene.sensors[sensor].name +
                                 "' does not measure a joint's force and moment");
-  const Pose link = s.in_world(s.model.links[place.point.link].frame);
-  const Wrench about_link = transmitted_wrench(s.state, place.reaction);
-  const Vector3 arm = link.orientation * s.scene.sensors[sensor].at;
-  return {link.position + arm, {about_link.force, about_link.moment - arm.cross(about_link.force)}};
+  return {pose_in_world(s.model, s.state, place.point).position, flexarm::sensed_wrench(s.model, s.state, place)};
 }
 void Simulation::effort_wrenches(std::vector<ActingWrench>& wrenches) const {
   const Implementation& s = *implementation_;

@@ -239,13 +239,25 @@ TEST(ContactOutputs, FloorAndClampCarryABeam) {
       "<circle radius=\"0.004\"/><material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/></beam></link>"
       "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>"
       "<ground name=\"low\" offset=\"-0.05\"/><contact first=\"low\" second=\"arm\" stiffness=\"1e6\"/>"
-      "<sensor name=\"root\" kind=\"reaction\" link=\"arm\"/>");
+      "<sensor name=\"root\" kind=\"reaction\" link=\"arm\"/>"
+      "<sensor name=\"felt\" kind=\"contact\" link=\"arm\" at=\"1 0 0\"/>");
   ASSERT_TRUE(simulation.solve_static(1).converged);
   run(simulation, 0.01);
   const double weight = 2700 * 3.14159265358979323846 * 0.004 * 0.004 * kG;
   const double floor = -columns_of(simulation, "low/arm")[2], clamp = simulation.sample(0).values[2];
   EXPECT_GT(floor, 0.05 * weight);
   EXPECT_NEAR(floor + clamp, weight, 1e-4 * weight) << "it starts in equilibrium, to what statics leave";
+
+  // The sensor's moment is about the tip, where it is now.
+  const Vector3 tip = simulation.section(1, 1).pose.position;
+  EXPECT_LT(tip.z(), -0.04);
+  Vector3 moment(0, 0, 0);
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  for (const ActingContact& contact : contacts)
+    moment += (contact.first == "arm" ? 1 : -1) * (contact.position - tip).cross(contact.force);
+  const auto& felt = simulation.sample(1).values;
+  EXPECT_LE((Vector3(felt[3], felt[4], felt[5]) - moment).norm(), 1e-12 * moment.norm());
 }
 
 // The motor's 40 N move two fingers, the second of which mimics the first. By virtual work each finger presses with 20

@@ -2,6 +2,7 @@
 // joint.
 #include <gtest/gtest.h>
 
+#include "support/loops.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -154,6 +155,69 @@ TEST(Reactions, AgreeWithTheSectionForceAtRest) {
   // The force of the part before the section on the part behind it is minus the resultant.
   const BeamPoint section = simulation.section(1, 0);
   EXPECT_LE((reaction.moment + section.resultant.tail<3>()).norm(), 1e-6 * reaction.moment.norm());
+}
+
+/// A rod between two hinges about y: of the tree at its root, of a loop at its end. It sags under its weight.
+SceneBuilder rod_on_two_hinges() {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  b.beam("rod", {{1, 0, 0}}, section(2e4, 1e4, 1, 1, 0.1, 2e-5, 1e-5), 8, 2);
+  b.joint("pin", scene::JointKind::Revolute, "world", "rod", {0, 0, 0}, {0, 1, 0});
+  close_loop(b, "end", scene::JointKind::Revolute, "world", "rod", {1, 0, 0}, {0, 1, 0});
+  b.scene.integrator.tolerance = 1e-12;
+  return b;
+}
+
+Vector3 moment_of(const Simulation& simulation, std::size_t sensor) {
+  const auto& values = simulation.sample(sensor).values;
+  return {values[3], values[4], values[5]};
+}
+
+// A hinge transmits no moment about its axis. `at` is the point of the section there, which turns and sags, and the
+// other link's end of the hinge is at the same place.
+TEST(Reactions, OfALoopAreAboutAPointOfTheSection) {
+  for (const std::string scheme : {"em", "newmark"}) {
+    SceneBuilder b = rod_on_two_hinges();
+    b.scene.integrator.scheme = scheme;
+    b.sensor("end", scene::SensorKind::Reaction, "rod", {1, 0, 0});
+    b.sensor("wall", scene::SensorKind::Wrench, "world", {1, 0, 0});
+    b.sensor("middle", scene::SensorKind::Reaction, "rod", {0.5, 0, 0});
+    for (scene::Sensor& sensor : b.scene.sensors) sensor.joint = "end";
+    b.sensor("root", scene::SensorKind::Reaction, "rod");
+    Simulation simulation(b.scene);
+    // Moments have round-off of the forces, which are as large as stiffness times round-off of strains.
+    const auto check = [&](double weight, double round_off) {
+      const Vector3 force = simulation.sensed_wrench(0).wrench.force;
+      EXPECT_GT(force.z(), weight) << scheme;
+      EXPECT_NEAR(moment_of(simulation, 0).y(), 0, round_off) << scheme;
+      EXPECT_NEAR(moment_of(simulation, 1).y(), 0, round_off) << scheme;
+      EXPECT_NEAR(moment_of(simulation, 3).y(), 0, round_off) << scheme;
+      EXPECT_LE((simulation.sensed_wrench(1).wrench.force + force).norm(), round_off) << "the opposite on the world";
+      const Vector3 arm = simulation.section(1, 0.5).pose.position - simulation.section(1, 1).pose.position;
+      EXPECT_NEAR(moment_of(simulation, 2).y(), -arm.cross(force).y(), round_off) << scheme;
+      EXPECT_LE((simulation.sensed_wrench(2).position - simulation.section(1, 0.5).pose.position).norm(), 1e-15);
+    };
+    ASSERT_TRUE(simulation.solve_static(1).converged);
+    EXPECT_LT(simulation.section(1, 0.5).pose.position.z(), -5 * 0.981 / 384 / 2) << "it sags, held by tension, too";
+    check(0.45 * 0.981, 1e-10);
+    simulation.reset();
+    for (int n = 0; n < 50; ++n) ASSERT_TRUE(simulation.step().converged);  // straight at first, it falls
+    check(0, 1e-8);
+  }
+}
+
+// A dead force at the tip is all that acts, so the clamp's wrench has no moment about the tip, wherever that is.
+TEST(Reactions, OfAClampHaveNoMomentAboutALoadedTip) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}}, section(2e4, 1e4, 0.8, 1, 0.5, 0.02, 0.01), 6, 2);
+  b.joint("clamp", scene::JointKind::Fixed, "world", "arm");
+  b.load("arm", {1, 0, 0}, {0, 1, 3});
+  b.sensor("about tip", scene::SensorKind::Reaction, "arm", {1, 0, 0});
+  b.scene.integrator.tolerance = 1e-12;
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.solve_static(3).converged);
+  EXPECT_GT(simulation.section(1, 1).pose.position.z(), 0.5);
+  EXPECT_LE(moment_of(simulation, 0).norm(), 1e-10);
 }
 
 }  // namespace
