@@ -55,11 +55,12 @@ VALIDATION = sorted(name[:-3] for name in os.listdir(os.path.join(ROOT, "docs", 
 # The order of reading: each page has a next one. A caption of README.md or a page, then what is below it.
 CONTENTS = {
     "README": [
-        ("Use", """docs/install docs/guide docs/tutorial_flexible_link docs/tutorial_servo docs/tutorial_ros
+        ("Use", """docs/install docs/guide docs/tutorial_flexible_link docs/tutorial_servo docs/from_gazebo
+            docs/tutorial_ros
             docs/tutorial_moveit docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep
             docs/payloads docs/identify docs/linearise docs/show docs/results docs/plot docs/film docs/portability"""),
-        ("Reference", """docs/scene_format docs/ros docs/rviz docs/web docs/command_line docs/python docs/python_api
-            docs/cpp_api docs/schemes"""),
+        ("Reference", """docs/scene_format docs/ros docs/rviz docs/web docs/troubleshooting docs/command_line
+            docs/python docs/python_api docs/cpp_api docs/schemes"""),
         ("Theory", "docs/theory docs/notes/README docs/architecture CONTRIBUTING"),
         ("Reports", """docs/demo docs/contact docs/lines docs/reports/speed docs/reports/accuracy docs/reports/hard
             docs/reports/properties docs/reports/thesis docs/reports/scaling docs/reports/latency docs/reports/soak
