@@ -271,8 +271,8 @@ void print_frequencies(Simulation& simulation) {
     return;
   }
   auto [modes, is_equilibrium] = modes_about_equilibrium(simulation, kModes);
-  // Free motions and slow decays come first, and say nothing about the beams. There may be as many as coordinates; few are
-  // found faster.
+  // Free motions and slow decays come first, and say nothing about the beams. There may be as many as coordinates; few
+  // are found faster.
   const auto oscillates = [](const Mode& mode) { return mode.frequency > 0 && mode.rate <= 0; };
   const int most = kModes + 2 * static_cast<int>(simulation.coordinate_names().size());
   for (int count = kModes; count < most && std::count_if(modes.begin(), modes.end(), oscillates) < kModes;) {

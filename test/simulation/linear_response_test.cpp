@@ -106,6 +106,30 @@ TEST(FrequencyResponse, PeaksAtThePole) {
   }
 }
 
+// Behind an elastic gear the load moves much less than the motor: at high frequencies, what the free motion and the
+// swing contribute cancels. With I y'' = c (r - y) + d (r' - y') and J r'' = u - c (r - y) - d (r' - y'), the gain is
+// (d s + c) / (I J s^4 + (I + J) (d s^3 + c s^2)).
+TEST(FrequencyResponse, BehindAnElasticGear) {
+  scene::SceneDescription description = test::scene_of(R"(<robot name="drive"><link name="world"/>
+    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="load"/> <axis xyz="0 0 1"/> </joint>
+    <link name="load"> <inertial> <mass value="1"/>
+      <inertia ixx="0.35" iyy="0.35" izz="0.35" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <drive joint="hinge" gear="60" rotor_inertia="3e-5" stiffness="900" damping="0.4"/>
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
+  LinearRequest request;
+  request.inputs = {"effort:hinge"};
+  request.outputs = {"position:hinge"};
+  const double load = 0.35, motor = 3600 * 3e-5, c = 900, d = 0.4;
+  const std::vector<double> frequencies = logarithmic(0.1, 2e4, 400);
+  const FrequencyResponse response =
+      frequency_response(linearise(Simulation(std::move(description)), request), frequencies);
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    const Complex s = {0, 2 * kPi * frequencies[n]};
+    const Complex expected = (d * s + c) / (load * motor * s * s * s * s + (load + motor) * (d * s + c) * s * s);
+    EXPECT_LT(std::abs(response.gains[n](0, 0) / expected - 1.0), 1e-12) << frequencies[n];
+  }
+}
+
 TEST(FrequencyResponse, SaysWhereThereIsNone) {
   EXPECT_THROW(frequency_response(oscillator(1, 0), {1 / (2 * kPi)}), std::runtime_error);
 }
@@ -206,6 +230,50 @@ TEST(ReducedModel, KeepsFreeMotions) {
   EXPECT_LT(largest_error(model, small.model, frequencies), 2 * values.tail(values.size() - 8).sum() + 1e-9 * free);
   EXPECT_THROW(reduced(model, 1), std::invalid_argument);
   EXPECT_THROW(reduced(model, static_cast<int>(model.a.rows()) + 1), std::invalid_argument);
+}
+
+/// A thin arm in the plane of its hinge, with a load at its end. Nothing holds the hinge, which a damper brakes.
+LinearModel hinged_arm(double damping) {
+  scene::SceneDescription description = test::scene_of(R"(<robot name="arm"><link name="world"/>
+    <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 0 1"/>
+      <dynamics damping=")" + std::to_string(damping) + R"("/> </joint>
+    <link name="boom"> <beam elements="6"> <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.008"/>
+      <material young="70e9" poisson="0.33" density="2700"/> <damping ratio="0.005" frequency="3"/>
+      <hub at="start" mass="0.5" inertia="0.02 0.02 0.02"/> </beam> </link>
+    <joint name="grip" type="fixed"> <parent link="boom"/> <child link="load"/> <origin xyz="2 0 0"/> </joint>
+    <link name="load"> <inertial> <mass value="1"/>
+      <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
+  LinearRequest request;
+  request.inputs = {"effort:shoulder"};
+  request.outputs = {"position:load:y"};
+  return linearise(Simulation(std::move(description)), request);
+}
+
+// The arm's motions out of the plane decay slowly, and the motor moves none of them. Of the motions in the plane, only
+// one pole of the free hinge does not decay, or both without the damper; it is 0 also in the smaller model.
+TEST(ReducedModel, KeepsNothingThatDecaysOrThatNoInputMoves) {
+  for (const double damping : {0.01, 0.0}) {
+    const LinearModel model = hinged_arm(damping);
+    const int kept = damping > 0 ? 1 : 2;
+    const std::vector<Pole> all = poles(model);
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const Pole& pole) { return pole.value == 0.0; }), kept);
+    const ReducedModel small = reduced(model, 6);
+    EXPECT_EQ(small.kept, kept);
+    ASSERT_EQ(small.model.a.rows(), 6);
+    const std::vector<Pole> fewer = poles(small.model);
+    for (int k = 0; k < kept; ++k) {
+      EXPECT_EQ(fewer[static_cast<std::size_t>(k)].value, 0.0);
+      EXPECT_EQ(fewer[static_cast<std::size_t>(k)].damping_ratio(), 0);
+    }
+    for (std::size_t k = static_cast<std::size_t>(kept); k < fewer.size(); ++k) EXPECT_LT(fewer[k].value.real(), 0);
+    const VectorXd& values = small.hankel_singular_values;
+    const double bound = 2 * values.tail(values.size() - (6 - kept)).sum();
+    for (const double frequency : logarithmic(0.01, 1e4, 200)) {
+      const double whole = frequency_response(model, {frequency}).gains[0].norm();
+      EXPECT_LT(largest_error(model, small.model, {frequency}), bound + 1e-7 * whole) << frequency;
+    }
+  }
 }
 
 // ---------------------------------------------------------------- very thin beams
