@@ -131,8 +131,8 @@ Part still_part(const Part& part, const MatrixXd& a, double scale) {
   for (Index first = 0; first < basis.cols();) {
     const MatrixXd rest = projection.bottomRows(basis.cols() - first) * a * basis.rightCols(basis.cols() - first);
     const SingularValues values = singular_values(rest);
-    const Index moves = (values.values.array() > kNoMotion * scale).count(), stays = rest.cols() - moves;
-    if (stays == 0) break;
+    const Index stays = std::max<Index>(1, (values.values.array() <= kNoMotion * scale).count()),
+                moves = rest.cols() - stays;
     MatrixXd turn(rest.cols(), rest.cols());  // what stays comes first
     turn << values.right.rightCols(stays), values.right.leftCols(moves);
     basis.rightCols(turn.cols()) = (basis.rightCols(turn.cols()) * turn).eval();
