@@ -45,11 +45,6 @@ int element_count(const BeamLink& beam) {
   return beam.parts.back().element + 1;
 }
 
-std::string bending_advice(const BeamLink& beam) {
-  return fmt::format("a finer mesh of that link: {} elements or more{}", 2 * element_count(beam),
-                     beam.order == 2 && !beam.refines ? ", or refine=\"true\" of its <beam>" : "");
-}
-
 std::string advice(const Model& model, const StepResult& result) {
   const Failure& failure = result.failure;
   switch (result.reason) {
@@ -107,6 +102,11 @@ void require_place(const Model& model, const StepResult& result) {
 }
 
 }  // namespace
+
+std::string bending_advice(const BeamLink& beam) {
+  return fmt::format("a finer mesh of that link: {} elements or more{}", 2 * element_count(beam),
+                     beam.order == 2 && !beam.refines ? ", or refine=\"true\" of its <beam>" : "");
+}
 
 std::string place_name(const Model& model, const StepResult::Place& place) {
   if (place.coordinate >= 0) return fmt::format("joint coordinate '{}'", model.coordinates[place.coordinate].name);

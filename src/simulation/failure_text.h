@@ -13,6 +13,9 @@ namespace flexarm {
 /// @throws std::invalid_argument if the model does not have the place: then the result is that of another simulation
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result);
 
+/// What helps if elements of a beam are bent too far.
+std::string bending_advice(const BeamLink& beam);
+
 /// Names a place: "element 3 of 8 of link 'arm'", "joint coordinate 'elbow'". Empty if the place is unknown.
 std::string place_name(const Model& model, const StepResult::Place& place);
 

@@ -6,7 +6,9 @@
 #include "elements/element_configuration.h"
 #include "joints/joint_kinematics.h"
 #include "joints/servo_step.h"
+#include "math/pi.h"
 #include "math/shape_functions.h"
+#include "math/so3.h"
 #include "model/carried_origin.h"
 #include "simulation/beam_sections.h"
 
@@ -142,6 +144,39 @@ EdgeStrain largest_edge_strain(const Model& model, const State& state, const Bea
       largest = {strain, point.arc_length};
   });
   return largest;
+}
+
+namespace {
+
+/// The sum of the bends between neighbouring nodes of an element; 0 if it cannot be more than `limit` [rad].
+template <class Element>
+double element_bending(const Model& model, const State& state, const Element& element, double limit) {
+  std::array<Quaternion, Element::kNodes - 1> now, undeformed;
+  double bound = 0;
+  for (int k = 0; k + 1 < Element::kNodes; ++k) {
+    const int first = element.nodes[k], second = element.nodes[k + 1];
+    now[k] = state.nodes[first].orientation.conjugate() * state.nodes[second].orientation;
+    undeformed[k] = model.nodes[first].orientation.conjugate() * model.nodes[second].orientation;
+    const Quaternion turn = undeformed[k].conjugate() * now[k];
+    bound += turn.w() > 0 ? kPi * turn.vec().norm() : 2 * kPi;  // phi <= pi sin(phi / 2) up to pi
+  }
+  if (bound <= limit) return 0;
+  double angle = 0;
+  for (int k = 0; k + 1 < Element::kNodes; ++k)
+    angle += (so3::unfolded_log(now[k]) - so3::unfolded_log(undeformed[k])).template tail<2>().norm();
+  return angle;
+}
+
+}  // namespace
+
+ElementBending most_bent_element(const Model& model, const State& state, const BeamLink& beam, double limit) {
+  ElementBending most{limit, 0};
+  for (std::size_t e = 0; e < beam.elements.size(); ++e)
+    visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
+      const double angle = element_bending(model, state, element, most.angle);
+      if (angle > most.angle) most = {angle, e};
+    });
+  return most.angle > limit ? most : ElementBending();
 }
 
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi) {

@@ -27,6 +27,15 @@ struct EdgeStrain {
 };
 EdgeStrain largest_edge_strain(const Model& model, const State& state, const BeamLink& beam);
 
+/// The element of a beam that is bent most: by how much, without torsion and without the bends of the undeformed line
+/// [rad], and its place in BeamLink::elements. An element of angle zero if none is bent by more than `limit`; looking
+/// at such elements costs next to nothing.
+struct ElementBending {
+  double angle = 0;
+  std::size_t element = 0;
+};
+ElementBending most_bent_element(const Model& model, const State& state, const BeamLink& beam, double limit);
+
 /// The section of a beam at the parameter `xi` in [-1, 1] of one of its elements.
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi);
 

@@ -21,6 +21,9 @@ namespace {
 constexpr double kLargestRotation = 0.5;
 /// Strain above which there is a warning. Materials of arms fail, and their linear law ceases to hold, far below it.
 constexpr double kLargestStrain = 0.1;
+/// Bending of an element above which there is a warning, by its order [rad]: there its compliance is wrong by about 3
+/// %. (docs/notes/refinement.md 1)
+constexpr double kLargestBending[] = {0, 1.0, 2.1, 3.6, 5.5};
 /// Largest defect of the energy account of a conserving or explicit scheme, relative to the largest energy. It is far
 /// above the error that the tolerance of Newton's method leaves.
 constexpr double kLargestEnergyDefect = 1e-3;
@@ -41,6 +44,7 @@ RunSummary::RunSummary(const Simulation& simulation)
       is_explicit_(scheme_of(simulation).tableau != nullptr),
       start_(simulation.energies()),
       energy_scale_(energy_of_rest(simulation)) {
+  look_at_bending(simulation);
   look(simulation);
 }
 
@@ -49,6 +53,21 @@ void RunSummary::count(const Simulation& simulation, const StepResult& result) {
   if (result.largest_rotation > rotation_.amount)
     rotation_ = {result.largest_rotation, simulation.time(), -1, 0,
                  place_of_node(model_of(simulation), state_of(simulation), result.turning_node)};
+  look_at_bending(simulation);
+}
+
+void RunSummary::look_at_bending(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const std::optional<BeamLink>& beam = model.links[link].beam;
+    if (!beam) continue;
+    const double limit = std::max(bending_.amount, kLargestBending[beam->order]);
+    const ElementBending most = most_bent_element(model, state_of(simulation), *beam, limit);
+    if (most.angle == 0) continue;
+    bending_ = {most.angle, simulation.time(), static_cast<int>(link), 0, {}};
+    bending_.place.link = bending_.index;
+    bending_.place.element = beam->parts[most.element].element;
+  }
 }
 
 void RunSummary::look(const Simulation& simulation) {
@@ -77,6 +96,18 @@ std::string RunSummary::rotation_warning(const Simulation& simulation) const {
       place.empty() ? "a node" : place, angle, rotation_.time, 100 * lag, kLargestRotation);
 }
 
+std::string RunSummary::bending_warning(const Simulation& simulation) const {
+  if (bending_.amount == 0) return "";
+  const Model& model = model_of(simulation);
+  const BeamLink& beam = *model.links[bending_.index].beam;
+  return fmt::format(
+      "{} was bent by up to {:.2g} rad, at t = {:.6g} s: beyond {} rad, elements of order {} are wrong by 3 % and soon "
+      "by "
+      "much more; use {}",
+      place_name(model, bending_.place), bending_.amount, bending_.time, kLargestBending[beam.order], beam.order,
+      bending_advice(beam));
+}
+
 std::string RunSummary::strain_warning(const Simulation& simulation) const {
   if (strain_.amount <= kLargestStrain) return "";
   return fmt::format(
@@ -96,7 +127,8 @@ std::string RunSummary::energy_warning() const {
 }
 
 std::vector<std::string> RunSummary::warnings(const Simulation& simulation) const {
-  std::vector<std::string> warnings = {rotation_warning(simulation), strain_warning(simulation), energy_warning()};
+  std::vector<std::string> warnings = {rotation_warning(simulation), bending_warning(simulation),
+                                       strain_warning(simulation), energy_warning()};
   warnings.erase(std::remove(warnings.begin(), warnings.end(), ""), warnings.end());
   return warnings;
 }

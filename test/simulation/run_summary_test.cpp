@@ -63,6 +63,51 @@ TEST(RunSummary, StepsOfAnExplicitSchemeThatAreTooLongAreNamed) {
   EXPECT_NE(warnings[0].find("by errors of the explicit scheme"), std::string::npos) << warnings[0];
 }
 
+/// Warnings of a straight beam of two elements, each of which a moment at the tip bends or twists by this angle:
+/// EI = GJ = 1, so that the curvature is the moment.
+std::vector<std::string> warnings_of_turned_beam(const Vector3& angle) {
+  SceneBuilder b;
+  b.beam("strip", {{1, 0, 0}}, section(1e5, 1e5, 1, 1, 1, 0.02, 0.01), 2, 2);
+  b.joint("clamp", JointKind::Fixed, "world", "strip");
+  b.load("strip", {1, 0, 0}, {0, 0, 0}, 2 * angle);
+  b.scene.gravity.setZero();
+  Simulation simulation(b.scene);
+  EXPECT_TRUE(simulation.solve_static(20).converged);
+  return RunSummary(simulation).warnings(simulation);
+}
+
+// The bound is 2.1 rad, where the compliance of an evenly bent element is wrong by about 3 %.
+TEST(RunSummary, ElementsThatAreBentFarAreNamed) {
+  EXPECT_TRUE(warnings_of_turned_beam({0, 0, 2}).empty());
+  EXPECT_TRUE(warnings_of_turned_beam({3, 0, 0}).empty()) << "torsion that is even makes no error";
+  const std::vector<std::string> warnings = warnings_of_turned_beam({0, 0, 2.5});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find(" of 2 of link 'strip' was bent by up to 2.5 rad, at t = 0 s"), std::string::npos)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find("or refine=\"true\""), std::string::npos) << warnings[0];
+}
+
+// A light rod that flies is wound up by moments at its ends. Four elements take up a third more work than they should;
+// halved ones are never bent that far.
+TEST(RunSummary, ElementsThatWindUpDuringARunAreNamed) {
+  for (const bool refines : {false, true}) {
+    SceneBuilder b;
+    scene::BeamDescription& beam = b.beam("rod", {{1, 0, 0}}, section(1e5, 1e5, 0.08, 0.1, 0.12, 2e-7, 1e-7), 4, 2);
+    beam.stiffness_proportional_damping = 0.002;
+    beam.refine = refines;
+    b.joint("flight", JointKind::Floating, "world", "rod");
+    b.load("rod", {1, 0, 0}, {0, 0, 0}, {0, -3, 0}, "sin(62.83185307179586*t)^2");
+    b.load("rod", {0, 0, 0}, {0, 0, 0}, {0, 1.8, 0}, "sin(62.83185307179586*t)^2");
+    b.scene.gravity.setZero();
+    b.scene.integrator.step = 2e-4;
+    Simulation simulation(b.scene);
+    std::string told;
+    for (const std::string& warning : warnings_after(simulation, 200)) told += warning + "\n";
+    const bool is_named = told.find(" of 4 of link 'rod' was bent by up to ") != std::string::npos;
+    EXPECT_EQ(is_named, !refines) << told;
+  }
+}
+
 TEST(RunSummary, LargeStrainIsNamed) {
   SceneBuilder b;
   b.beam("rope", {{1, 0, 0}}, section(10, 5, 1, 1, 1, 0.02, 0.01), 4, 2);

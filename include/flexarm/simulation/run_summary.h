@@ -8,9 +8,9 @@
 
 namespace flexarm {
 
-/// Counts steps and their recoveries. Records the largest rotation of a node in a step, the largest strain and the
-/// largest error of the energy balance, with place and time. One thread may call count() while another one calls
-/// look().
+/// Counts steps and their recoveries. Records the largest rotation of a node in a step, the element that was bent most,
+/// the largest strain and the largest error of the energy balance, with place and time. One thread may call count()
+/// while another one calls look().
 class RunSummary {
  public:
   /// Call this at the beginning of the run.
@@ -34,10 +34,12 @@ class RunSummary {
     double amount = 0, time = 0;
     int index = -1;                // of the link
     double arc_length = 0;         // position of the largest strain [m]
-    StepResult::Place place = {};  // of the node that turned most
+    StepResult::Place place = {};  // of the node that turned most, or of the element that was bent most
   };
+  void look_at_bending(const Simulation& simulation);
   static double account(const Energies& energies) { return energies.total() - energies.work + energies.dissipated; }
   std::string rotation_warning(const Simulation& simulation) const;
+  std::string bending_warning(const Simulation& simulation) const;
   std::string strain_warning(const Simulation& simulation) const;
   std::string energy_warning() const;
 
@@ -45,7 +47,7 @@ class RunSummary {
   bool conserves_energy_, is_explicit_;
   Energies start_;
   double energy_scale_ = 0;  // largest energy of the motion so far [J]
-  Largest rotation_, strain_, energy_;
+  Largest rotation_, bending_, strain_, energy_;
 };
 
 }  // namespace flexarm
