@@ -81,7 +81,7 @@ TEST(Section, TorsionOfRectangles) {
 /// Torsion constant by the other of Saint-Venant's two series, whose waves are along the long side a.
 double torsion_by_other_series(double a, double b) {
   double sum = 0;
-  for (int n = 1; n < 2000; n += 2) sum += std::tanh(n * kPi * b / (2 * a)) / std::pow(n, 5);
+  for (int n = 19999; n > 0; n -= 2) sum += std::tanh(n * kPi * b / (2 * a)) / std::pow(n, 5);
   return b * a * a * a / 3 * (1 - 192 / std::pow(kPi, 5) * a / b * sum);
 }
 
@@ -95,7 +95,7 @@ TEST(Section, Rectangle) {
   // Round-off of the other series grows with the square of the sides' ratio: its terms cancel.
   for (const double height : {0.02, 0.0201, 0.03, 0.06, 0.2}) {
     const double exact = torsion_by_other_series(height, 0.02), cancelled = 1e-15 * std::pow(height / 0.02, 2);
-    EXPECT_NEAR(torsion_constant(0.02, height), exact, 4 * cancelled * exact) << height;
+    EXPECT_NEAR(torsion_constant(0.02, height), exact, 10 * cancelled * exact) << height;
   }
 }
 
