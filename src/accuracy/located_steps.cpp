@@ -279,6 +279,7 @@ bool LocatedSteps::advance_through_cell(double end, RunWatcher& watcher, Accurat
     run.end = AccurateRun::End::Failed;
     if (!run.last.converged) return false;
   }
+  correct_time(simulation_, end);
   return true;
 }
 

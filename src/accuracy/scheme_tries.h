@@ -19,7 +19,9 @@ struct TryPlan {
   std::vector<double> cells;  ///< ends of the cells of LocatedSteps: judged times and known corners [s]
 
   double interval() const { return (request.until - begin) / request.intervals; }  ///< [s]
-  double judged_time(int i) const { return i == request.intervals ? request.until : begin + i * interval(); }
+  double judged_time(int i) const {
+    return i == request.intervals ? request.until : begin + (request.until - begin) * i / request.intervals;
+  }
 };
 
 /// Cost of what StepResult counts as an iteration, relative to an iteration of Newton's method. For an explicit scheme

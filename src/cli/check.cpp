@@ -8,6 +8,7 @@
 #include "building/section.h"
 #include "cli/commands.h"
 #include "cli/mode_table.h"
+#include "cli/round_off.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/driven_ends.h"
 #include "integrators/step_plane.h"
@@ -57,7 +58,9 @@ void print_plane(const Simulation& simulation) {
   const PlaneSearch search = find_step_plane(model_of(simulation), scheme_of(simulation));
   if (!search.plane) return fmt::print("steps are three-dimensional: {}\n", search.reason);
   const Vector3& normal = search.plane->normal;
-  fmt::print("steps are taken in the plane with the normal {:.6g} {:.6g} {:.6g}\n", normal.x(), normal.y(), normal.z());
+  fmt::print("steps are taken in the plane with the normal");
+  for (int i = 0; i < 3; ++i) fmt::print(" {:.6g}", without_round_off(normal[i], 1));
+  fmt::print("\n");
 }
 
 /// Figures of a link with a beam.

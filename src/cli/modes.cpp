@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/page_options.h"
+#include "cli/round_off.h"
 #include "cli/scene_input.h"
 #include "flexarm/scene/scene_description.h"
 #include "pictures/page.h"
@@ -17,6 +18,9 @@ namespace {
 /// digits.
 constexpr double kVisibleImaginary = 1e-4;
 
+/// Error of shapes by round-off, relative to the largest component.
+constexpr double kShapeError = 1e-9;
+
 struct ModesArguments {
   SceneInput scene;
   int count = 10;
@@ -27,7 +31,7 @@ struct ModesArguments {
 
 void print_motion(const std::string& name, const Vector6& motion) {
   fmt::print("  {:<24}", name);
-  for (int i = 0; i < 6; ++i) fmt::print(" {:>11.4g}", motion[i]);
+  for (int i = 0; i < 6; ++i) fmt::print(" {:>11.4g}", without_round_off(motion[i], 1, kShapeError));
   fmt::print("\n");
 }
 

@@ -70,9 +70,9 @@ class CheckpointTimes {
   double every_, next_;
 };
 
-/// The last time at which a step may begin [s]. A later step would only make up for the round-off of all steps before.
+/// The last time at which a step may begin [s]. A later step would only make up for round-off.
 double last_beginning(double until, double step) {
-  const double round_off = until / step * std::numeric_limits<double>::epsilon() * until;
+  const double round_off = 4 * std::numeric_limits<double>::epsilon() * until;
   return until - std::clamp(round_off, 1e-6 * step, 0.5 * step);
 }
 

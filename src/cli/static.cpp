@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
@@ -5,10 +7,12 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/page_options.h"
+#include "cli/round_off.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/csv_writer.h"
 #include "pictures/page.h"
 #include "pictures/still_pictures.h"
+#include "simulation/inside.h"
 
 namespace flexarm::cli {
 namespace {
@@ -21,14 +25,20 @@ struct StaticArguments {
   PageOptions page;
 };
 
-void print_point(const std::string& name, const Vector3& position) {
-  fmt::print("  {:<24} {:>14.7g} {:>14.7g} {:>14.7g}\n", name, position.x(), position.y(), position.z());
-}
-
 void print_equilibrium(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  const double length = model.length_scale;
+  const auto print_point = [&](const std::string& name, const Vector3& position) {
+    fmt::print("  {:<24}", name);
+    for (int i = 0; i < 3; ++i) fmt::print(" {:>14.7g}", without_round_off(position[i], length));
+    fmt::print("\n");
+  };
   const std::vector<std::string>& names = simulation.coordinate_names();
   if (!names.empty()) fmt::print("joint coordinates [m, rad]\n");
-  for (std::size_t i = 0; i < names.size(); ++i) fmt::print("  {:<24} {:>14.7g}\n", names[i], simulation.position(i));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double size = is_rotation(model, model.coordinates[i]) ? 1 : length;
+    fmt::print("  {:<24} {:>14.7g}\n", names[i], without_round_off(simulation.position(i), size));
+  }
   fmt::print("positions [m]\n");
   for (std::size_t i = 0; i < simulation.link_names().size(); ++i) {
     print_point("link " + simulation.link_names()[i], simulation.link_pose(i).position);
@@ -38,7 +48,9 @@ void print_equilibrium(const Simulation& simulation) {
   const std::vector<scene::Probe>& probes = simulation.scene().probes;
   for (std::size_t i = 0; i < probes.size(); ++i)
     print_point("probe " + probes[i].name, simulation.probe_pose(i).position);
-  fmt::print("strain energy {:.7g} J\n", simulation.energies().strain);
+  const Energies energies = simulation.energies();
+  const double size = std::max({std::abs(energies.potential), std::abs(energies.work), energies.strain});
+  fmt::print("strain energy {:.7g} J\n", without_round_off(energies.strain, size));
 }
 
 int solve(const StaticArguments& arguments) {

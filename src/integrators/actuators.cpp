@@ -112,7 +112,7 @@ double Actuators::rate_of_command(const ServoState& state, double time) const {
 
 SetPoint Actuators::commanded_set_point(const ServoState& state) const {
   if (configuration_.scheme().is_static) return {state.set_point, state.set_point};
-  const double begin = configuration_.state().time, end = begin + configuration_.step();
+  const double begin = configuration_.state().time, end = configuration_.end_time();
   SetPoint out(state.set_point_at(begin), state.set_point_at(end));
   out.rate_at_end = out.acting_rate = rate_of_command(state, end);
   return out;
@@ -123,9 +123,8 @@ SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const
   if (servo.set_point < 0) return {servo.start, servo.start};
   const TimeFunction& history = configuration_.model().histories[servo.set_point];
   const Scheme& scheme = configuration_.scheme();
-  const double begin = scheme.is_static ? 0 : configuration_.state().time, end = begin + configuration_.step();
-  if (scheme.is_static) return {history(begin), history(end)};
-  const double step = configuration_.step();
+  if (scheme.is_static) return {history(0), history(0)};
+  const double step = configuration_.step(), begin = configuration_.state().time, end = configuration_.end_time();
   SetPoint out(set_point_at_border(history, begin, step), set_point_at_border(history, end, step));
   out.mean = histories_.of_servo(servo.set_point).mean;
   out.acting = histories_.of_servo(servo.set_point).acting;

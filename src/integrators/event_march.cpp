@@ -5,6 +5,7 @@
 #include <cmath>
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
+#include "math/step_end.h"
 
 namespace flexarm {
 namespace {
@@ -307,7 +308,7 @@ std::string EventMarch::go(State& state, double length, int pieces, MarchFollowe
     if (!cross(state, corner, length, length / pieces, follower))
       return "velocities before and after an event cannot be found";
   }
-  state.time = begin + length;
+  state.time = step_end(begin, length);
   return "";
 }
 

@@ -10,6 +10,7 @@
 #include "integrators/explicit_obstacle.h"
 #include "joints/joint_kinematics.h"
 #include "math/so3.h"
+#include "math/step_end.h"
 #include "schemes/explicit_tableau.h"
 
 namespace flexarm {
@@ -156,7 +157,8 @@ bool ExplicitStep::acts_as_before(const State& state) const {
 /// Evaluates all functions of time at a part of a step. At its ends these are the limits from inside, since functions
 /// may jump there: found by a straight line through two points inside, whose error is far below round-off.
 void ExplicitStep::find_values(double begin, double step, double part) {
-  const double time = begin + part * step, inwards = part == 0 ? kInwards * step : part == 1 ? -kInwards * step : 0;
+  const double time = part == 1 ? step_end(begin, step) : begin + part * step;
+  const double inwards = part == 0 ? kInwards * step : part == 1 ? -kInwards * step : 0;
   for (const int i : varying_) {
     const TimeFunction& function = model_.histories[i];
     values_[i] = inwards == 0 ? function(time) : 2 * function(time + inwards) - function(time + 2 * inwards);
@@ -343,7 +345,7 @@ void ExplicitStep::write(State& state, double step) {
   for (std::size_t i = 0; i < applied_.size(); ++i) state.efforts[i] = applied_[i];
   write_actuators(state, step);
   state.history.clear();
-  state.time = last_time_ = state.time + step;
+  state.time = last_time_ = step_end(state.time, step);
   std::copy(state.commands.begin(), state.commands.end(), last_commands_.begin());
   last_nodes_ = state.nodes;
   last_values_ = values_;

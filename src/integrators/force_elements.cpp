@@ -57,8 +57,8 @@ ForceElements::ForceElements(const StepConfiguration& configuration, const StepH
 /// Evaluates the elements' functions of time over the step.
 void ForceElements::find_functions() {
   // As loads, they have their values at time 0 in statics.
-  const double begin = configuration_.scheme().is_static ? 0 : configuration_.state().time;
-  const double end = begin + configuration_.step();
+  const bool is_static = configuration_.scheme().is_static;
+  const double begin = is_static ? 0 : configuration_.state().time, end = is_static ? 0 : configuration_.end_time();
   FunctionStep* out = functions_.data();
   for (const auto& element : configuration_.model().force_elements)
     for (const int history : element->functions()) {

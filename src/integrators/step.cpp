@@ -72,7 +72,7 @@ void StepSystem::move_ahead(const IncrementHistory& history, int order) {
 }
 
 void StepSystem::place_followers() {
-  configuration_.set_prescribed(configuration_.state().time + configuration_.step());
+  configuration_.set_prescribed(configuration_.end_time());
   configuration_.set_slaves();
 }
 
@@ -202,7 +202,7 @@ void StepSystem::accept(State& state) {
   actuators_.accept(state);
   beams().accept(state);
   if (interpolation_) interpolation_->accept(state);
-  state.time += configuration_.step();
+  state.time = configuration_.end_time();
 }
 
 }  // namespace flexarm

@@ -8,6 +8,7 @@
 #include "math/cayley.h"
 #include "math/pi.h"
 #include "math/so3.h"
+#include "math/step_end.h"
 
 namespace flexarm {
 namespace {
@@ -40,6 +41,7 @@ StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, c
 void StepConfiguration::begin(const State& state, double step) {
   state_ = &state;
   step_ = step;
+  end_time_ = step_end(state.time, step);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) begin_[i] = node_pose(state.nodes[i]);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());

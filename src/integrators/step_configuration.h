@@ -53,8 +53,9 @@ class StepConfiguration {
   const Model& model() const { return model_; }
   const Scheme& scheme() const { return scheme_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
-  const State& state() const { return *state_; }  ///< at the beginning of the step
-  double step() const { return step_; }           ///< [s]; 0: statics
+  const State& state() const { return *state_; }                     ///< at the beginning of the step
+  double step() const { return step_; }                              ///< [s]; 0: statics
+  double end_time() const { return end_time_; }   ///< [s]
   const std::vector<NodePose>& begin() const { return begin_; }
   const std::vector<NodePose>& end() const { return end_; }
   const std::vector<Released>& released() const { return released_; }
@@ -125,7 +126,7 @@ class StepConfiguration {
   FreeNodes free_nodes_;
   Eigen::VectorXd guess_;  // guessed increments, one entry per unknown
   const State* state_ = nullptr;
-  double step_ = 0;
+  double step_ = 0, end_time_ = 0;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
   std::vector<slide::Place> begin_places_, end_places_;  // per joint, valid for sliders; empty if there are none

@@ -14,7 +14,7 @@ struct Instants {
 
 /// Instants for efforts. In the Newmark family, the rows of coordinates are balances at the end of a step.
 Instants ends_of(const StepConfiguration& configuration) {
-  const double begin = configuration.state().time, end = begin + configuration.step();
+  const double begin = configuration.state().time, end = configuration.end_time();
   return {begin, end, begin, end, 0.5};
 }
 /// Instants for loads.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "math/step_end.h"
+
 namespace flexarm {
 
 StepPrestrains::StepPrestrains(const StepConfiguration& configuration)
@@ -19,7 +21,7 @@ StepPrestrains::StepPrestrains(const StepConfiguration& configuration)
 bool StepPrestrains::begin(double factor) {
   const Scheme& scheme = configuration_.scheme();
   const Model& model = configuration_.model();
-  const double time = configuration_.state().time, step = configuration_.step();
+  const double time = configuration_.state().time, step = configuration_.step(), end_time = configuration_.end_time();
   const bool is_endpoint = !scheme.is_static && !scheme.is_incremental();
   bool are_others = false;
   do_work_ = false;
@@ -30,7 +32,7 @@ bool StepPrestrains::begin(double factor) {
     if (scheme.is_static) {
       of_step_[i] = factor * at(0);
     } else {
-      const Vector6 begin = at(time), end = at(time + step);
+      const Vector6 begin = at(time), end = at(end_time);
       change_[i] = end - begin;
       mean_[i] = 0.5 * (begin + end);
       if (is_endpoint) {
@@ -38,14 +40,14 @@ bool StepPrestrains::begin(double factor) {
         of_step_[i] = (reach_ == 1 ? end : at(time + reach_ * step)) + made_up_[i];
         surplus_[i] = scheme.gamma * made_up_[i] + (1 - scheme.gamma) * last_made_up_[i];
       } else {
-        of_step_[i] = mean_prestrain(model, static_cast<int>(i) - 1, time, time + step);
+        of_step_[i] = mean_prestrain(model, static_cast<int>(i) - 1, time, end_time);
         surplus_[i] = of_step_[i] - mean_[i];
       }
     }
     do_work_ = do_work_ || change_[i] != Vector6::Zero() || surplus_[i] != Vector6::Zero();
     are_others = are_others || of_step_[i] != before;
   }
-  made_up_end_ = time + step;
+  made_up_end_ = end_time;
   made_up_step_ = step;
   return are_others;
 }
@@ -53,8 +55,9 @@ bool StepPrestrains::begin(double factor) {
 Vector6 StepPrestrains::made_up(std::size_t i, double begin, double step) const {
   const Model& model = configuration_.model();
   const int index = static_cast<int>(i) - 1;
-  const Vector6 mean = mean_prestrain(model, index, begin, begin + step);
-  if (reach_ == 1) return mean - 0.5 * (prestrain_at(model, index, begin) + prestrain_at(model, index, begin + step));
+  const double end = step_end(begin, step);
+  const Vector6 mean = mean_prestrain(model, index, begin, end);
+  if (reach_ == 1) return mean - 0.5 * (prestrain_at(model, index, begin) + prestrain_at(model, index, end));
   // The instants at which the last step and this one evaluate forces. There are no forces before the start.
   const double earlier = begin - (1 - reach_) * step, gamma = configuration_.scheme().gamma;
   return mean - (1 - gamma) * prestrain_at(model, index, begin >= 0 ? std::max(earlier, 0.0) : earlier) -

@@ -9,6 +9,7 @@
 #include "integrators/explicit_step.h"
 #include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
+#include "math/step_end.h"
 #include "model/line_release.h"
 #include "model/room_for_wrenches.h"
 
@@ -94,7 +95,7 @@ bool Stepper::sub_step(State& state, double step, StepResult& result) {
     invalidate();
     return false;
   }
-  state.time = before_.time + step;
+  state.time = step_end(before_.time, step);
   return true;
 }
 
@@ -169,7 +170,7 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   if (follower_) follower_->begin_step();
   if (!do_sub_steps(state, deadline, result)) return result;
   const double done = settings_.step - rest_;
-  state.time = begin_ + done;
+  state.time = rest_ == 0 ? step_end(begin_, settings_.step) : begin_ + done;
   if (explicit_) {  // they are known at the end
     state.drives.restart(state.efforts);
     state.transmitted.restart(state.last_transmitted);

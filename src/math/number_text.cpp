@@ -57,8 +57,10 @@ std::optional<double> parse(std::string_view text, bool is_hexadecimal) {
 /// length, returns the one without.
 std::string shortest(double value) {
   std::string best(kLongestNumber, ' ');
-  for (int digits = 1; digits <= 17; ++digits) {
-    char text[kLongestNumber];
+  char text[kLongestNumber];
+  snprintf(text, sizeof text, "%.15g", value);
+  // Most results need 16 or 17 digits. If 15 are not enough, fewer are not either.
+  for (int digits = strtod(text, nullptr) == value ? 1 : 16; digits <= 17; ++digits) {
     const std::size_t length = snprintf(text, sizeof text, "%.*g", digits, value);
     if (length <= best.size() && strtod(text, nullptr) == value) best.assign(text, length);
   }
@@ -83,8 +85,6 @@ std::optional<double> parse_hexadecimal(std::string_view text) {
 char* write_number(char* begin, double value, NumberFormat format) {
   char* end = begin + kLongestNumber;
   switch (format) {
-    case NumberFormat::AllDigits:
-      return std::to_chars(begin, end, value, std::chars_format::general, 17).ptr;
     case NumberFormat::Hexadecimal:
       return std::to_chars(begin, end, value, std::chars_format::hex).ptr;
     default:
@@ -97,11 +97,11 @@ char* write_number(char* begin, double value, NumberFormat format) {
 char* write_number(char* begin, double value, NumberFormat format) {
   const locale_t users = uselocale(plain_locale());
   std::string text;
-  if (format == NumberFormat::Shortest && std::isfinite(value)) {
-    text = shortest(value);
+  if (format == NumberFormat::Shortest) {
+    text = std::isfinite(value) ? shortest(value) : std::isnan(value) ? "nan" : value < 0 ? "-inf" : "inf";
   } else {
     char all[kLongestNumber];
-    text.assign(all, snprintf(all, sizeof all, format == NumberFormat::Hexadecimal ? "%a" : "%.17g", value));
+    text.assign(all, snprintf(all, sizeof all, "%a", value));
     if (const std::size_t prefix = text.find("0x"); prefix != std::string::npos) text.erase(prefix, 2);
   }
   uselocale(users);

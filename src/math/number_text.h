@@ -16,7 +16,6 @@ std::optional<double> parse_hexadecimal(std::string_view text);
 /// Formats for writing numbers. All of them are read back exactly.
 enum class NumberFormat {
   Shortest,     ///< as 0.1 or 1e+300
-  AllDigits,    ///< 17 digits, as 0.10000000000000001
   Hexadecimal,  ///< without "0x"
 };
 constexpr std::size_t kLongestNumber = 32;

@@ -19,11 +19,11 @@ inline void append(std::string& line, const std::string& name) {
   line += '"';
 }
 
-/// Appends a number with 17 significant digits, so that it is read back bit for bit, in any locale.
+/// Appends a number by the shortest text that is read back bit for bit, in any locale.
 inline void append(std::string& line, double value) {
   if (!line.empty()) line += ',';
   char digits[kLongestNumber];
-  line.append(digits, write_number(digits, value, NumberFormat::AllDigits) - digits);
+  line.append(digits, write_number(digits, value, NumberFormat::Shortest) - digits);
 }
 
 }  // namespace flexarm::csv

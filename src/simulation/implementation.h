@@ -18,6 +18,7 @@
 #include "flexarm/simulation/simulation.h"
 #include "integrators/energies.h"
 #include "integrators/stepper.h"
+#include "math/step_end.h"
 #include "model/carried_origin.h"
 #include "model/line_release.h"
 #include "model/room_for_wrenches.h"
@@ -166,7 +167,7 @@ struct Simulation::Implementation {
   /// Makes a step. Sliders that leave their lines in it become free at that time, and elements that are strongly bent
   /// are halved.
   StepResult advance() {
-    const double end = state.time + settings.step;
+    const double end = step_end(state.time, settings.step);
     if (is_refined) {
       if (state.steps % kStepsBetweenJoins == 0) join_straight();
       before_part = state;

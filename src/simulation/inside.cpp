@@ -116,6 +116,9 @@ void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved)
 void set_step(Simulation& simulation, double step, const EventSearch& events) {
   Inside::of(simulation).set_step(step, events);
 }
+void correct_time(Simulation& simulation, double time) {
+  Inside::of(simulation).state.time = time;
+}
 double step_of_constants(const Simulation& simulation) {
   return Inside::of(simulation).step_of_constants;
 }

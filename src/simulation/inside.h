@@ -70,6 +70,8 @@ void take_mesh(Simulation& simulation, const std::vector<HalvedElement>& halved)
 
 /// Sets the length of the next steps [s], whatever the sample times of servos, and how they look for events.
 void set_step(Simulation& simulation, double step, const EventSearch& events);
+/// Sets the time, which must differ from the present one by round-off only [s].
+void correct_time(Simulation& simulation, double time);
 /// The step from which the scheme has its constants (take_constants_of_step()) [s]: that of the scene, unless
 /// set_step_of_constants() has set another.
 double step_of_constants(const Simulation& simulation);

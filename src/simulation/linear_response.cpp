@@ -105,7 +105,7 @@ StepResponse step_response(const LinearModel& model, double until, int intervals
   for (int n = 0; n <= intervals; ++n) {
     if (n > 0) states += (change.leftCols(count) * states + change.rightCols(inputs)).eval();
     if (!states.allFinite()) throw std::runtime_error(fmt::format("the response overflows within {} s", until));
-    response.times.push_back(n == intervals ? until : n * interval);
+    response.times.push_back(until * n / intervals);
     response.outputs.push_back(scaled.c * states + model.d);
   }
   return response;

@@ -11,6 +11,7 @@
 #include "analysis/statics.h"
 #include "flexarm/simulation/command_refusal.h"
 #include "math/so3.h"
+#include "math/step_end.h"
 #include "model/carried_origin.h"
 #include "simulation/entry.h"
 #include "simulation/failure_text.h"
@@ -177,13 +178,13 @@ void Simulation::command_set_point(std::size_t index, double set_point, double r
   Implementation& s = *implementation_;
   require_own_servo(*this, index);
   flexarm::command_set_point(servo_of(s.model, index, s.state), set_point, rate, acceleration,
-                             s.state.time + s.settings.step);
+                             step_end(s.state.time, s.settings.step));
 }
 
 double Simulation::set_point(std::size_t index) const {
   const Implementation& s = *implementation_;
   return flexarm::set_point(servo_of(s.model, index), s.model, servo_of(s.model, index, implementation_->state),
-                            s.state.time + s.settings.step);
+                            step_end(s.state.time, s.settings.step));
 }
 
 void Simulation::release_set_point(std::size_t index) {

@@ -36,10 +36,8 @@ TEST(NumberText, IsReadBackBitForBit) {
     if (k == 8) value = -0.0;
     if (!std::isfinite(value)) continue;
     const std::optional<double> shortest = parse_number(written(value, NumberFormat::Shortest)),
-                                all = parse_number(written(value, NumberFormat::AllDigits)),
                                 hexadecimal = parse_hexadecimal(written(value, NumberFormat::Hexadecimal));
     ASSERT_TRUE(shortest && are_same_bits(*shortest, value)) << value;
-    ASSERT_TRUE(all && are_same_bits(*all, value)) << value;
     ASSERT_TRUE(hexadecimal && are_same_bits(*hexadecimal, value)) << value;
   }
 }
@@ -48,10 +46,10 @@ TEST(NumberText, IsWrittenAsExpected) {
   EXPECT_EQ(written(0.1, NumberFormat::Shortest), "0.1");
   EXPECT_EQ(written(100, NumberFormat::Shortest), "100");
   EXPECT_EQ(written(1e300, NumberFormat::Shortest), "1e+300");
-  EXPECT_EQ(written(0.1, NumberFormat::AllDigits), "0.10000000000000001");
-  EXPECT_EQ(written(1e300, NumberFormat::AllDigits), "1.0000000000000001e+300");
+  EXPECT_EQ(written(0.1 + 0.2, NumberFormat::Shortest), "0.30000000000000004");
   EXPECT_EQ(written(-12, NumberFormat::Hexadecimal), "-1.8p+3");
-  EXPECT_EQ(written(std::numeric_limits<double>::infinity(), NumberFormat::AllDigits), "inf");
+  EXPECT_EQ(written(std::numeric_limits<double>::infinity(), NumberFormat::Shortest), "inf");
+  EXPECT_EQ(written(-std::numeric_limits<double>::infinity(), NumberFormat::Shortest), "-inf");
 }
 
 TEST(NumberText, TakesNumbersAndNothingElse) {
@@ -74,10 +72,9 @@ TEST(NumberText, DoesNotDependOnTheLocale) {
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "nl_NL.UTF-8"})
     if (!with_comma) with_comma = std::setlocale(LC_ALL, name);
   if (!with_comma) GTEST_SKIP() << "this machine has no locale with a decimal comma";
-  const std::string text = written(0.5, NumberFormat::AllDigits), shortest = written(0.5, NumberFormat::Shortest);
+  const std::string shortest = written(0.5, NumberFormat::Shortest);
   const std::optional<double> value = parse_number("0.5");
   std::setlocale(LC_ALL, before.c_str());
-  EXPECT_EQ(text, "0.5");
   EXPECT_EQ(shortest, "0.5");
   EXPECT_EQ(value, 0.5);
 }
