@@ -113,7 +113,7 @@ double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
 void UnknownScales::choose_order(IncrementHistory& history) const {
   if (history.count < 2 || scales_.size() == 0) return;
   constexpr int kLowest = IncrementHistory::kNoMotion, kOrders = IncrementHistory::kHighestOrder + 1 - kLowest;
-  static_assert(IncrementHistory::kLength == 4);
+  static_assert(IncrementHistory::kHighestOrder == 2);
   std::array<IncrementHistory::Weights, kOrders> weights;
   for (int i = 0; i < kOrders; ++i) weights[i] = history.weights(kLowest + i, 1, history.steps[0]);
   std::array<Largest, kOrders> errors;

@@ -26,7 +26,7 @@ std::vector<double>& IncrementHistory::push(double step, std::size_t unknowns) {
 }
 
 IncrementHistory::Weights IncrementHistory::weights(int order, int first, double step) const {
-  assert(order >= kNoMotion && order <= kHighestOrder && first >= 0);
+  assert(order >= kNoMotion && order <= kHighestOrder && (first == 0 || first == 1));
   Weights out{};
   if (first + order >= count) return out;
   // Times of the ends of the steps, newest first, and of the beginning of the oldest one; the newest end is at time 0.

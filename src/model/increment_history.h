@@ -1,5 +1,6 @@
 #pragma once
-/// The increments of the unknowns over the last steps, from which the predictor extrapolates the next one.
+/// The increments of the unknowns over the last steps, from which the predictor extrapolates the next one, and from
+/// which published velocities follow.
 
 #include <array>
 #include <vector>
@@ -9,12 +10,12 @@ namespace flexarm {
 /// Extrapolates with the polynomial through the ends of the last steps. Steps may have different lengths and run
 /// backwards.
 struct IncrementHistory {
-  static constexpr int kLength = 4;
+  static constexpr int kLength = 5;  ///< as many as published velocities need
   /// Orders of extrapolation. Order 0 repeats the last velocity. kNoMotion predicts no motion at all, which is best if
   /// the step is longer than the periods of the motion. The highest order needs kHighestOrder + 1 increments, and one
   /// more to be judged by.
-  static constexpr int kNoMotion = -1, kHighestOrder = kLength - 2;
-  using Weights = std::array<double, kLength>;
+  static constexpr int kNoMotion = -1, kHighestOrder = 2;
+  using Weights = std::array<double, kHighestOrder + 2>;
 
   std::array<std::vector<double>, kLength> increments;  ///< per equation, newest first [m or rad]
   std::array<double, kLength> steps{};                  ///< length of each step [s]

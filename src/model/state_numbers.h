@@ -12,9 +12,9 @@ constexpr const char* kDuration = "the duration of a past step";
 
 /// Calls `visit(what, number)` for every floating-point number of a state, in a fixed order. `what`: name of the
 /// quantity for messages. Integers are not visited: halving_level, good_steps, steps, the counts and order of
-/// histories, left_lines, halved.
+/// histories, left_lines, halved. `past_steps`: how many past steps have increments; older files have fewer.
 template <class AnyState, class Visit>
-void for_each_number(AnyState& state, const Visit& visit) {
+void for_each_number(AnyState& state, const Visit& visit, std::size_t past_steps = IncrementHistory::kLength) {
   const auto vector = [&](const char* what, auto& v) {
     for (int k = 0; k < v.size(); ++k) visit(what, v[k]);
   };
@@ -61,9 +61,9 @@ void for_each_number(AnyState& state, const Visit& visit) {
       visit("the memory of a servo", *number);
     for (auto& output : servo.outputs) visit("the memory of a servo", output);
   }
-  for (auto& made : state.history.increments)
-    for (auto& increment : made) visit("an increment", increment);
-  for (auto& step : state.history.steps) visit("the length of a past step", step);
+  for (std::size_t i = 0; i < past_steps; ++i)
+    for (auto& increment : state.history.increments[i]) visit("an increment", increment);
+  for (std::size_t i = 0; i < past_steps; ++i) visit("the length of a past step", state.history.steps[i]);
   for (auto& impulse : state.drives.impulse) visit("the impulse of a motion", impulse);
   for (auto& means : state.drives.means)
     for (auto& mean : means) visit("the effort of a motion", mean);

@@ -23,8 +23,9 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 15";
-constexpr const char* kHeaderWithoutFile = "flexarm-checkpoint 14";    // older: lacks only the scene's file
+constexpr const char* kHeader = "flexarm-checkpoint 16";
+constexpr const char* kHeaderOfFourSteps = "flexarm-checkpoint 15";    // older: lacks the fifth of the past steps
+constexpr const char* kHeaderWithoutFile = "flexarm-checkpoint 14";    // older: lacks the scene's file, too
 constexpr const char* kHeaderWithoutValues = "flexarm-checkpoint 13";  // older: lacks the scene's values, too
 constexpr std::size_t kShown = 120;                                    // characters of a line in messages
 
@@ -132,9 +133,12 @@ class Reader {
  public:
   Reader(const std::string& text, const std::string& name) : name_(name), lines_(text) {
     const std::string header = next();
-    if (header != kHeader && header != kHeaderWithoutFile && header != kHeaderWithoutValues)
+    const bool is_older =
+        header == kHeaderOfFourSteps || header == kHeaderWithoutFile || header == kHeaderWithoutValues;
+    if (header != kHeader && !is_older)
       fail_line(header, "'" + std::string(kHeader) + "': another format, or no checkpoint");
     has_values_ = header != kHeaderWithoutValues;
+    past_steps_ = is_older ? 4 : IncrementHistory::kLength;
     // Verify the checksum: an unfinished or damaged file would give a wrong state, or seem to belong to another scene.
     const std::size_t end = text.rfind("checksum ");
     if (end == std::string::npos) fail("is damaged: it does not end with its checksum");
@@ -143,6 +147,8 @@ class Reader {
       fail(fmt::format("is damaged: it ends with '{}', its content with '{}'", shown(found), shown(expected)));
   }
 
+  /// How many past steps of the state the text has.
+  std::size_t past_steps() const { return past_steps_; }
   std::string next() {
     std::string line;
     std::getline(lines_, line);
@@ -194,6 +200,7 @@ class Reader {
 
   std::string name_;
   bool has_values_ = false;
+  std::size_t past_steps_ = IncrementHistory::kLength;
   std::istringstream lines_;
   int number_ = 0;
 };
@@ -317,7 +324,8 @@ void read_checkpoint_text(Simulation& simulation, const std::string& text, const
     if (halved != state_of(simulation).halved) take_mesh(simulation, halved);
     State state = state_of(simulation);
     read_counts(reader, line, state);
-    for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
+    for_each_number(
+        state, [&](const char* what, double& value) { value = reader.number(what); }, reader.past_steps());
     reader.take_end();
     restore(simulation, state);
     const Energies energies = simulation.energies();

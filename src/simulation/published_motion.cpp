@@ -53,15 +53,19 @@ double counted_increment(const TimeRule& rule, const JointMap& joint, const Coor
 template <int Size>
 Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mean) const {
   using Rate = Eigen::Matrix<double, Size, 1>;
-  const auto& [h0, h1, h2, h3] = length;
-  // Extrapolate from the mean rate of the newest step to its end. `last` uses the change of the mean rate since the
-  // step before, `before` and `earlier` the changes before that.
-  const Rate last = h0 / (h0 + h1) * (mean[0] - mean[1]);
-  if (count < 3) return mean[0] + last;
-  const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
-  const Rate earlier = count < 4 ? before : Rate(h0 / (h2 + h3) * (mean[2] - mean[3]));
-  if (belong_to_smooth_motion(last, before) && belong_to_smooth_motion(before, earlier))
-    return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
+  const auto& h = length;
+  // Divided differences, whose values are half the rate's slope and a sixth of its curvature.
+  const auto slope = [&](int k) { return Rate((mean[k] - mean[k + 1]) / (h[k] + h[k + 1])); };
+  const auto curvature = [&](int k) { return Rate((slope(k) - slope(k + 1)) / (h[k] + h[k + 1] + h[k + 2])); };
+  const Rate last = slope(0);
+  if (count < 3) return mean[0] + h[0] * last;
+  const Rate before = slope(1), earlier = count < 4 ? before : slope(2);
+  const bool have_slopes = belong_to_smooth_motion(last, before) && belong_to_smooth_motion(before, earlier);
+  const auto have_curvatures = [&] {
+    const Rate middle = curvature(1);
+    return belong_to_smooth_motion(curvature(0), middle) && belong_to_smooth_motion(middle, curvature(2));
+  };
+  if (have_slopes || (count >= 5 && have_curvatures())) return mean[0] + h[0] * (last + (h[0] + h[1]) * curvature(0));
   return mean[0];
 }
 template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;

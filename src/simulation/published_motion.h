@@ -27,16 +27,16 @@ struct MotionView {
 /// Lengths of the last steps, newest first. Converts mean rates in these steps to the rate at the end of the newest
 /// one.
 struct LastSteps {
-  static constexpr int kMost = 4;
+  static constexpr int kMost = 5;
   int count = 2;                       ///< at least two
   std::array<double, kMost> length{};  ///< [s]; parts of a composed step may be negative
 
   /// Mean rates of a quantity of Size 1 or 3 in these steps: increments over lengths, newest first.
   template <int Size>
   using MeanRates = std::array<Eigen::Matrix<double, Size, 1>, kMost>;
-  /// The rate at the end of the newest step. It is of third order if the motion is smooth over four steps. Otherwise it
-  /// is the mean rate of the newest step, which is of second order where the rate has an extremum. Invariant under
-  /// rotations. Soon after the start, when fewer steps are known, three or two steps are used.
+  /// The rate at the end of the newest step. It is of third order if the motion is smooth: the slopes of the rate agree
+  /// over four steps or, around an extremum of the rate, its curvatures over five. Otherwise it is the mean rate of the
+  /// newest step. Invariant under rotations. Soon after the start, when fewer steps are known, three or two are used.
   template <int Size>
   Eigen::Matrix<double, Size, 1> rate_at_end(const MeanRates<Size>& mean) const;
 };

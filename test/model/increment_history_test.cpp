@@ -57,7 +57,7 @@ TEST(IncrementHistory, EqualStepsHaveTheBinomialWeights) {
   const IncrementHistory history = history_of({1, 1, 1, 1}, 1, time);
   const IncrementHistory::Weights expected[] = {{1, 0, 0, 0}, {2, -1, 0, 0}, {3, -3, 1, 0}};
   for (int order = 0; order <= IncrementHistory::kHighestOrder; ++order)
-    for (int i = 0; i < IncrementHistory::kLength; ++i)
+    for (std::size_t i = 0; i < expected[order].size(); ++i)
       EXPECT_NEAR(history.weights(order, 0, 1)[i], expected[order][i], kRoundOff);
 }
 
