@@ -15,6 +15,7 @@ import signal
 # message, not even if that happens during the imports below.
 signal.signal(signal.SIGINT, signal.SIG_DFL)
 
+import ctypes
 import math
 import os
 import sys
@@ -81,7 +82,27 @@ def fit(config, view, prefix, description, interactive=False):
     return config
 
 
+def fault_of_display():
+    """Why no window can be opened, or ""."""
+    name = os.environ.get("DISPLAY", "")
+    if not name:
+        return "there is no display, as DISPLAY is not set"
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return ""  # rviz will say what is missing
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    return "" if x11.XOpenDisplay(None) else "the display %s cannot be opened" % name
+
+
+def give_up(reason):
+    sys.exit("rviz cannot start: %s. The simulation runs without it. With headless:=true, roslaunch does not try to "
+             "start rviz; with web:=true, a browser shows the arm instead." % reason)
+
+
 def main():
+    if fault := fault_of_display():
+        give_up(fault)
     view = wait_for_view()
     description = rospy.search_param("robot_description")
     if description is None:
@@ -96,11 +117,14 @@ def main():
     path = os.path.join(rospkg.get_ros_home(), name)
     with open(path, "w", encoding="utf-8") as file:
         yaml.safe_dump(config, file)
-    os.execvp("rviz", ["rviz", "-d", path, *sys.argv[1:]])
+    try:
+        os.execvp("rviz", ["rviz", "-d", path, *sys.argv[1:]])
+    except FileNotFoundError:
+        give_up("it is not installed")
 
 
 if __name__ == "__main__":
     try:
         main()
     except (OSError, rospy.ROSException) as error:
-        sys.exit("show_in_rviz.py: %s" % error)  # the master is gone, or rviz is not installed
+        sys.exit("show_in_rviz.py: %s" % error)  # the master is gone

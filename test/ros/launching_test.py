@@ -50,9 +50,11 @@ sed "s/SIDE/${2#side:=}/" "$1"
 class Launched:
     """Runs roslaunch in a folder, with the test's master, until the `with` block ends."""
 
-    def __init__(self, folder, *arguments, path=None):
+    def __init__(self, folder, *arguments, path=None, display=None):
         self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
         environment = dict(os.environ, PWD=folder, PATH=path or os.environ["PATH"])
+        if display is not None:
+            environment["DISPLAY"] = display
         with open(self.log.name, "w", encoding="utf-8") as output:
             self.process = subprocess.Popen(["roslaunch", "flexarm", "simulate.launch", *arguments], cwd=folder,
                                             env=environment, stdout=output, stderr=subprocess.STDOUT)
@@ -162,6 +164,16 @@ class Launching(unittest.TestCase):
             self.assertIn(self.folder.name + "/arm.urdf:10: <material> of beam 'rod'", said)
             self.assertIn("got 'stiff'", said)
             self.assertNotIn("Traceback", said)
+
+    def test_without_a_display_it_says_what_to_do(self):
+        for display, fault in (("", "DISPLAY is not set"), (":987", "the display :987 cannot be opened")):
+            with self.launch("scene:=arm.urdf", display=display) as launched:
+                wait_until(lambda: "rviz cannot start: " in launched.output(), "the reason", 30)
+                wait_until(lambda: "with web:=true" in launched.output(), "the advice")
+                self.assertIn(fault, launched.output())
+                self.assertIn("With headless:=true", launched.output())
+                self.assertNotIn("Traceback", launched.output())
+                self.wait_for_status()  # the simulation goes on
 
     def test_xacro(self):
         with self.launch("scene:=arm.urdf.xacro", "xacro_args:=side=left mirrored=true", "headless:=true",

@@ -23,7 +23,8 @@ ROUND_OFF = 1e-12
 class Rviz(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with mock.patch("os.execvp") as execute, mock.patch("sys.argv", ["show_in_rviz.py", "__name:=rviz"]):
+        with mock.patch("os.execvp") as execute, mock.patch("sys.argv", ["show_in_rviz.py", "__name:=rviz"]), \
+                mock.patch("show_in_rviz.fault_of_display", return_value=""):
             show_in_rviz.main()
         (cls.program, cls.arguments), _ = execute.call_args
         with open(cls.arguments[2], encoding="utf-8") as file:
