@@ -211,7 +211,9 @@ class ContactBuilder {
       if (side->surfaces.empty() && side->tubes.empty())
         throw ModelError(
             at(contact.location, "<contact>") +
-            fmt::format("link '{}' has nothing to touch with: expected a <collision> or a <beam>", side->name));
+            fmt::format("link '{}' has nothing to touch with: expected a <collision> whose shape has an extent, or a "
+                        "<beam>",
+                        side->name));
     if (first.is_fixed && second.is_fixed)
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("'{}' and '{}' never move against each other", first.name, second.name));

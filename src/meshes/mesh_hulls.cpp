@@ -5,13 +5,22 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <fstream>
 #include <stdexcept>
 
+#include "math/lfs_pointer.h"
 #include "meshes/convex_hull.h"
 
 namespace flexarm::meshes {
 
+void refuse_lfs_pointer(const std::string& path) {
+  std::string beginning(100, ' ');
+  std::ifstream(path).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  if (is_lfs_pointer(beginning)) throw std::runtime_error(kLfsPointerText);
+}
+
 std::vector<Polytope> hulls_of_file(const std::string& path, const Vector3& scale) {
+  refuse_lfs_pointer(path);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, true);  // else all meshes would be merged
   const aiScene* const file = importer.ReadFile(path, aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);

@@ -7,6 +7,8 @@
 
 #include <stdexcept>
 
+#include "meshes/mesh_hulls.h"
+
 namespace flexarm::meshes {
 namespace {
 
@@ -42,6 +44,7 @@ void add_node(const aiScene& file, const aiNode& node, const aiMatrix4x4& placem
 }  // namespace
 
 SurfaceMesh surface_of_file(const std::string& path, const Vector3& scale) {
+  refuse_lfs_pointer(path);
   Assimp::Importer importer;
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCrease);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

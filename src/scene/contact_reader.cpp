@@ -136,6 +136,8 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
     if (!ground.name.empty() && !sides.insert(ground.name).second)
       findings.error(ground.location.line, element("ground"),
                      "its name must differ from those of all links and other grounds", quoted(ground.name));
+  std::vector<std::string> candidates(sides.begin(), sides.end());
+  candidates.erase(std::find(candidates.begin(), candidates.end(), kAllBodies));
   std::set<std::pair<std::string, std::string>> named;
   const auto has_line = [&](const std::string& name) {
     const auto is_it = [&](const LinkDescription& link) { return link.name == name; };
@@ -147,7 +149,9 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
     for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
       if (sides.count(side) == 0)
         findings.error(pair.location.line, who,
-                       std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
+                       std::string(attribute) + " must be a link or a ground of the scene" +
+                           findings.candidates(side, candidates) + ", or *",
+                       quoted(side));
     if (pair.first == pair.second && pair.first != kAllBodies && !has_line(pair.first))
       findings.error(pair.location.line, who,
                      "first and second must be different, except for a beam without <collision>", quoted(pair.first));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "flexarm/math/near_names.h"
 #include "scene/limits.h"
 
 namespace flexarm::scene {
@@ -45,6 +46,13 @@ std::string Findings::got(const tinyxml2::XMLAttribute& attribute) const {
 std::string Findings::origin(const tinyxml2::XMLAttribute& attribute) const {
   const auto found = origins_.find(&attribute);
   return found == origins_.end() ? "" : found->second;
+}
+
+std::string Findings::candidates(std::string_view unknown, const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 30'000'000;  // pairs of letters: a third of a second
+  if (names.empty() || unknown.size() > kLongestName || compared_ > kMost) return "";
+  for (const std::string& name : names) compared_ += (unknown.size() + 1) * (name.size() + 1);
+  return compared_ > kMost ? "" : " (" + nearest_listed(unknown, names) + ")";
 }
 
 void Findings::add(Diagnostic finding) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tinyxml2.h>
 
@@ -30,6 +31,10 @@ class Findings {
   /// Returns the origin of the attribute's value; empty if the file gives the value itself.
   std::string origin(const tinyxml2::XMLAttribute& attribute) const;
 
+  /// Returns the names that an unknown one could be, the nearest one first: " (hand, arm and 20 others)". Empty if
+  /// there are none, or if so much was compared for other messages that more of it would take seconds.
+  std::string candidates(std::string_view unknown, const std::vector<std::string>& names);
+
   const std::string& file() const { return file_; }
   std::size_t error_count() const { return error_count_; }
   /// Returns all findings, sorted by line, and leaves none here.
@@ -40,7 +45,7 @@ class Findings {
 
   std::string file_;
   Diagnostics findings_;
-  std::size_t error_count_ = 0, omitted_ = 0;
+  std::size_t error_count_ = 0, omitted_ = 0, compared_ = 0;
   std::map<const tinyxml2::XMLAttribute*, std::string> origins_;
 };
 

@@ -12,6 +12,9 @@ namespace {
 
 /// Relative to the largest principal moment: smaller violations count as round-off.
 constexpr double kRoundOff = 1e-9;
+/// Relative to the largest principal moment: a negative moment up to this size results from numbers that were rounded
+/// to few digits.
+constexpr double kRoundedMoment = 1e-2;
 /// Radius of gyration below which a body counts as a point mass: some exporters write such small numbers for zero. [m]
 constexpr double kSmallestRadius = 1e-6;
 
@@ -92,28 +95,50 @@ Vector3 principal_moments(const Matrix3& inertia) {
   return Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-void check_inertias(const SceneDescription& scene, Findings& findings) {
+namespace {
+
+/// The nearest inertia without negative principal moments (in Frobenius' norm).
+Matrix3 without_negative_moments(const Matrix3& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(inertia);
+  return principal.eigenvectors() * principal.eigenvalues().cwiseMax(0).asDiagonal() *
+         principal.eigenvectors().transpose();
+}
+
+/// Judges a principal moment below 0.
+void settle_negative_moment(const RigidGroups& groups, const SceneDescription& scene, LinkDescription& link,
+                            const Vector3& moments, Findings& findings) {
+  const std::string element = "<inertia> of link " + quoted(link.name), got = fmt::format("'{}'", moments[0]);
+  const std::string expected = "principal moments of inertia must be >= 0";
+  const int line = link.inertial->location.line;
+  const double part = -moments[0] / moments.cwiseAbs().maxCoeff();
+  if (groups.is_connected(link.name) &&
+      (groups.carrier(link.name) == scene.root_link || groups.composite(link.name).can_be())) {
+    findings.warning(line, element, expected + " (harmless here: this inertia never acts alone, or it is negligible)",
+                     got);
+  } else if (part <= kRoundedMoment) {
+    link.inertial->inertia = without_negative_moments(link.inertial->inertia);
+    findings.warning(line, element,
+                     fmt::format("{}: {:.2g} of the largest one below 0 counts as rounded numbers, and 0 is taken "
+                                 "instead",
+                                 expected, part),
+                     got);
+  } else {
+    findings.error(line, element, expected, got);
+  }
+}
+
+}  // namespace
+
+void settle_inertias(SceneDescription& scene, Findings& findings) {
   const RigidGroups groups(scene);
-  for (const LinkDescription& link : scene.links) {
+  for (LinkDescription& link : scene.links) {
     if (!link.inertial || link.beam) continue;
-    const std::string element = "<inertia> of link " + quoted(link.name);
-    const int line = link.inertial->location.line;
     const Vector3 moments = principal_moments(link.inertial->inertia);
-    if (moments[0] < -round_off(moments)) {
-      const std::string got = fmt::format("'{}'", moments[0]);
-      const bool is_harmless = groups.is_connected(link.name) &&
-                               (groups.carrier(link.name) == scene.root_link || groups.composite(link.name).can_be());
-      if (is_harmless) {
-        findings.warning(line, element,
-                         "principal moments of inertia must be >= 0 (harmless here: this inertia never acts alone, or "
-                         "it is negligible)",
-                         got);
-      } else {
-        findings.error(line, element, "principal moments of inertia must be >= 0", got);
-      }
-    } else if (moments[2] > moments[0] + moments[1] + round_off(moments)) {
-      findings.warning(line, element, "no body has a principal moment of inertia larger than the sum of the others");
-    }
+    if (moments[0] < -round_off(moments))
+      settle_negative_moment(groups, scene, link, moments, findings);
+    else if (moments[2] > moments[0] + moments[1] + round_off(moments))
+      findings.warning(link.inertial->location.line, "<inertia> of link " + quoted(link.name),
+                       "no body has a principal moment of inertia larger than the sum of the others");
   }
 }
 

@@ -18,8 +18,6 @@ namespace flexarm::scene {
 namespace {
 
 constexpr std::string_view kOpen = "${";
-/// Elements for other programs, which may have expressions of their own.
-constexpr const char* kForeign[] = {"gazebo", "transmission"};
 
 /// Returns "from 0 to 300", "at least 0" or "at most 300". The parameter must have a bound.
 std::string range_text(const ParameterDescription& parameter) {
@@ -154,7 +152,7 @@ bool Expansion::expand_attributes(const WritableElement& target, std::string_vie
 
 void Expansion::expand(const WritableElement& target) {
   const std::string tag = target.element.tag();
-  if (is_of_xacro(tag) || std::find(std::begin(kForeign), std::end(kForeign), tag) != std::end(kForeign)) return;
+  if (is_of_xacro(tag) || is_for_others(tag)) return;
   expand_attributes(target);
   const char* name = target.xml.Attribute("name");
   const XmlElement owner = name                  ? target.element.with_name(name)

@@ -9,147 +9,28 @@
 
 #include "flexarm/scene/sensor_topic.h"
 #include "scene/flexible_link.h"
+#include "scene/scene_names.h"
 
 namespace flexarm::scene {
 namespace {
 
-std::string element_of(const char* tag, const std::string& name) {
-  return "<" + std::string(tag) + "> " + quoted(name);
-}
-
-std::string line_text(const SourceLocation& location) {
-  return "line " + std::to_string(location.line);
-}
-
-using NamesTaken = std::map<std::string, int>;  // names, and the lines in which they first occur
-
-/// Records an error if the name is in `taken`; else adds it.
-template <class Named>
-void check_name(const Named& thing, const char* tag, Findings& findings, NamesTaken& taken) {
-  const auto [first, is_new] = taken.emplace(thing.name, thing.location.line);
-  if (!is_new && !thing.name.empty())
-    findings.error(thing.location.line, element_of(tag, thing.name),
-                   "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
-}
-
-/// Records errors for names that occur twice. Errors for missing names are recorded elsewhere.
-template <class Named>
-NamesTaken check_unique(const std::vector<Named>& things, const char* tag, Findings& findings, NamesTaken taken = {}) {
-  for (const Named& thing : things) check_name(thing, tag, findings, taken);
-  return taken;
-}
-
-// ---------------------------------------------------------------- tree
-
-/// Records errors for joints whose parent or child is not a link of the scene.
-void check_links(const SceneDescription& scene, const std::vector<JointDescription>& joints, const char* joint_tag,
-                 Findings& findings) {
-  std::set<std::string> links;
-  for (const LinkDescription& link : scene.links) links.insert(link.name);
-  for (const JointDescription& joint : joints)
-    for (const auto& [tag, name] : {std::pair("parent", joint.parent), std::pair("child", joint.child)})
-      if (!name.empty() && links.count(name) == 0)
-        findings.error(joint.location.line, element_of(joint_tag, joint.name),
-                       std::string(tag) + " must be a link of the scene", quoted(name));
-}
-
-/// Returns, by the name of each link, the joint whose child it is. Records errors for links that are the child of two
-/// joints.
-std::map<std::string, const JointDescription*> find_parents(const SceneDescription& scene, Findings& findings) {
-  std::map<std::string, const JointDescription*> parents;
-  for (const JointDescription& joint : scene.joints) {
-    const std::string element = element_of("joint", joint.name);
-    if (!joint.parent.empty() && joint.parent == joint.child)
-      findings.error(joint.location.line, element, "parent and child must be different links", quoted(joint.child));
-    const auto [first, is_new] = parents.emplace(joint.child, &joint);
-    if (!is_new && !joint.child.empty())
-      findings.error(joint.location.line, element,
-                     "a link is the child of one joint only, and this one has " + quoted(first->second->name) + " (" +
-                         line_text(first->second->location) + ")",
-                     quoted(joint.child));
-  }
-  return parents;
-}
-
-/// Follows the chain of `next` from every name, and returns one name of each ring. `next` returns a name, or nothing at
-/// the end of a chain.
-template <class Named, class Next>
-std::vector<std::string> find_rings(const std::vector<Named>& things, const Next& next) {
-  std::vector<std::string> rings;
-  std::map<std::string, int> visits;  // by name: the number of the walk that first reached it
-  int walk = 0;
-  for (const Named& thing : things) {
-    ++walk;
-    std::string name = thing.name;
-    std::optional<std::string> following = next(name);
-    while (following && visits.emplace(name, walk).second) {
-      name = *following;
-      following = next(name);
-    }
-    if (following && visits.at(name) == walk) rings.push_back(name);
-  }
-  return rings;
-}
-
-void check_rings(const SceneDescription& scene, const std::map<std::string, const JointDescription*>& parents,
-                 Findings& findings) {
-  const auto above = [&](const std::string& link) -> std::optional<std::string> {
-    const auto joint = parents.find(link);
-    // An error for a joint from a link to itself is recorded already.
-    if (joint == parents.end() || joint->second->parent == link) return std::nullopt;
-    return joint->second->parent;
-  };
-  for (const std::string& link : find_rings(scene.links, above)) {
-    const JointDescription& joint = *parents.at(link);
-    findings.error(joint.location.line, element_of("joint", joint.name),
-                   "joints must form a tree, but their parents form a ring", quoted(link));
-  }
-}
-
-}  // namespace
-
-void check_tree(SceneDescription& scene, Findings& findings) {
-  const std::size_t errors = findings.error_count();
-  check_unique(scene.links, "link", findings);
-  std::vector<JointDescription> loop_joints = scene.loop_joints;
-  for (const ClearanceDescription& clearance : scene.clearances)
-    if (clearance.closes_loop) loop_joints.push_back(clearance.joint);
-  check_unique(loop_joints, "loop_joint", findings, check_unique(scene.joints, "joint", findings));
-  check_links(scene, scene.joints, "joint", findings);
-  check_links(scene, loop_joints, "loop_joint", findings);
-  const std::map<std::string, const JointDescription*> parents = find_parents(scene, findings);
-  check_rings(scene, parents, findings);
-  const bool are_joints_good = findings.error_count() == errors &&
-                               std::all_of(scene.joints.begin(), scene.joints.end(), [](const JointDescription& joint) {
-                                 return !joint.parent.empty() && !joint.child.empty();
-                               });
-  const LinkDescription* root = nullptr;
-  for (const LinkDescription& link : scene.links) {
-    if (link.name.empty() || parents.count(link.name) > 0) continue;
-    if (!root) {
-      root = &link;
-    } else if (are_joints_good) {
-      findings.error(link.location.line, element_of("link", link.name),
-                     "must be the child of a joint: a scene has one root link, and that is " + quoted(root->name));
-    }
-  }
-  if (root) scene.root_link = root->name;
-}
-
-namespace {
-
-// ---------------------------------------------------------------- names
-
 class ReferenceCheck {
  public:
   ReferenceCheck(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings)
-      : scene_(scene), unreadable_(unreadable), findings_(findings) {
+      : scene_(scene),
+        unreadable_(unreadable),
+        findings_(findings),
+        link_names_(link_names(scene)),
+        touching_names_(link_names_) {
+    for (const GroundDescription& ground : scene.grounds) touching_names_.push_back(ground.name);
     for (const LinkDescription& link : scene.links) links_.emplace(link.name, &link);
     for (const JointDescription& joint : scene.joints) add_joint(joint);
     for (const JointDescription& joint : scene.loop_joints) {
       add_joint(joint);
       loops_.insert(joint.name);
     }
+    for (const auto& [name, joint] : coordinates_)
+      if (!joint->mimic && !joint->name.empty()) coordinate_names_.push_back(name);
   }
 
   void check_mimics() const {
@@ -199,7 +80,8 @@ class ReferenceCheck {
       for (const auto& [attribute, link, at] : element->points())
         if (!link.empty() && links_.count(link) == 0)
           findings_.error(element->location.line, fmt::format("<{}> of robot {}", element->kind(), quoted(scene_.name)),
-                          attribute + " must be a link of the scene", quoted(link));
+                          attribute + " must be a link of the scene" + findings_.candidates(link, link_names_),
+                          quoted(link));
       if (!element->name.empty()) check_name(*element, element->kind(), findings_, taken);
     }
   }
@@ -263,7 +145,9 @@ class ReferenceCheck {
     for (const std::string& name : sensor.group)
       if (links_.count(name) == 0 && !is_ground(name))
         findings_.error(sensor.location.line, element,
-                        "group must be links and grounds of the scene, separated by spaces", quoted(name));
+                        "group must be links and grounds of the scene" + findings_.candidates(name, touching_names_) +
+                            ", separated by spaces",
+                        quoted(name));
   }
 
   bool closes_loop_at(const std::string& name, const std::string& link) const {
@@ -293,7 +177,9 @@ class ReferenceCheck {
     const auto found = joints_.find(target);
     if (target.empty()) return;  // recorded already
     if (found == joints_.end()) {
-      findings_.error(joint.location.line, element, "mimic joint must be a joint of the scene", quoted(target));
+      findings_.error(joint.location.line, element,
+                      "mimic joint must be a joint of the scene" + findings_.candidates(target, names_of_others(joint)),
+                      quoted(target));
       return;
     }
     if (loops_.count(target) > 0) {
@@ -367,9 +253,18 @@ class ReferenceCheck {
                       quoted(coordinate));
   }
 
+  /// Names of the joints of the tree, but for one.
+  std::vector<std::string> names_of_others(const JointDescription& one) const {
+    std::vector<std::string> names;
+    for (const auto& [name, joint] : joints_)
+      if (name != one.name && !name.empty() && loops_.count(name) == 0) names.push_back(name);
+    return names;
+  }
+
   std::string known_coordinates(const std::string& name) const {
     const auto joint = joints_.find(name);
-    if (joint == joints_.end()) return "the name of a joint's coordinate";
+    if (joint == joints_.end())
+      return "the name of a joint's coordinate" + findings_.candidates(name, coordinate_names_);
     std::string known;
     for (const std::string& suffix : coordinate_suffixes(*joint->second))
       known += (known.empty() ? "one of " : ", ") + quoted(name + suffix);
@@ -378,7 +273,8 @@ class ReferenceCheck {
 
   void check_link(const std::string& name, const SourceLocation& location, const char* element) const {
     if (!name.empty() && links_.count(name) == 0)
-      findings_.error(location.line, element, "link must be a link of the scene", quoted(name));
+      findings_.error(location.line, element,
+                      "link must be a link of the scene" + findings_.candidates(name, link_names_), quoted(name));
   }
 
   const SceneDescription& scene_;
@@ -386,6 +282,8 @@ class ReferenceCheck {
   Findings& findings_;
   std::map<std::string, const LinkDescription*> links_;
   std::map<std::string, const JointDescription*> joints_, coordinates_;
+  /// Candidates for unknown names: links, links with grounds, and coordinates that are no followers.
+  std::vector<std::string> link_names_, touching_names_, coordinate_names_;
   std::set<std::string> loops_;  // names of joints that close loops
 };
 

@@ -10,8 +10,13 @@
 
 namespace flexarm::scene {
 
-/// Checks links and joints and sets `scene.root_link`.
+// ---------------------------------------------------------------- the tree (tree_checks.cpp)
+
+/// Checks links and joints and sets `scene.root_link`. Declares the link "world" with a warning if joints use it as the
+/// root and nobody declares it.
 void check_tree(SceneDescription& scene, Findings& findings);
+
+// ---------------------------------------------------------------- names (scene_checks.cpp)
 
 /// Checks mimicking joints, and all names that <simulation>, force elements and sensors refer to. `unreadable`: names
 /// of links and joints with errors of their own; references to them are not checked.
@@ -34,9 +39,10 @@ void hold_followers_of_fixed_joints(SceneDescription& scene);
 Vector3 principal_moments(const Matrix3& inertia);
 
 /// Records principal moments that no body can have. A negative one is an error if something would move with it. It is a
-/// warning if it is negligible, or if links fixed to this link compensate it. Links with beams are skipped, since their
-/// inertia is the beam's.
-void check_inertias(const SceneDescription& scene, Findings& findings);
+/// warning if it is negligible, if links fixed to this link compensate it, or if it is so small that it results from
+/// rounded numbers; then the inertia becomes the nearest one whose moments are 0 or more. Links with beams are skipped,
+/// since their inertia is the beam's.
+void settle_inertias(SceneDescription& scene, Findings& findings);
 
 // ---------------------------------------------------------------- units (unit_checks.cpp)
 

@@ -1,4 +1,5 @@
 #include "scene/readers.h"
+#include "scene/scene_names.h"
 
 #include <algorithm>
 #include <iterator>
@@ -73,7 +74,9 @@ void connect_tendon_sensors(SceneDescription& scene, Findings& findings) {
     if (sensor.kind != SensorKind::Tendon || sensor.tendon.empty()) continue;
     const std::size_t tendon = find_force_element(scene, "tendon", sensor.tendon);
     if (tendon == scene.force_elements.size())
-      findings.error(sensor.location.line, "<sensor> " + quoted(sensor.name), "tendon must be the name of a <tendon>",
+      findings.error(sensor.location.line, "<sensor> " + quoted(sensor.name),
+                     "tendon must be the name of a <tendon>" +
+                         findings.candidates(sensor.tendon, force_element_names(scene, "tendon")),
                      quoted(sensor.tendon));
     else if (const std::vector<LinkPoint> points = scene.force_elements[tendon]->points(); !points.empty())
       sensor.link = points.front().link;

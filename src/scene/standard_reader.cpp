@@ -1,9 +1,14 @@
 #include "scene/standard_reader.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 
 #include "math/number_text.h"
+#include "math/pi.h"
 #include "scene/readers.h"
 #include "scene/urdfdom.h"
 
@@ -81,11 +86,13 @@ double checked_number(const XmlElement& element, const char* child, const char* 
 
 std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
   const std::size_t errors = inertial.findings().error_count();
-  inertial.expect_at_most_one({"origin", "mass", "inertia"});
-  for (const char* tag : {"mass", "inertia"})
-    if (!inertial.child(tag)) inertial.error("<" + std::string(tag) + "> is missing");
+  inertial.expect_first_counts({"origin", "mass", "inertia"});
+  if (!inertial.child("mass")) inertial.error("<mass> is missing");
   check_attributes(inertial, kInertialAttributes);
   if (inertial.findings().error_count() > errors) return std::nullopt;
+
+  const std::optional<XmlElement> rotary = inertial.child("inertia");
+  if (!rotary) inertial.warning("<inertia> is missing: its mass is a point");
 
   judge_alone(inertial, "<link name=\"link\">" + printed(inertial.xml()) + "</link>");
   const auto moment = [&](const char* attribute) { return checked_number(inertial, "inertia", attribute); };
@@ -96,7 +103,7 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
   const Pose frame = read_origin(inertial);
   const Matrix3 rotation = frame.orientation.toRotationMatrix();
   return RigidInertia{checked_number(inertial, "mass", "value"), frame.position,
-                      rotation * inertia * rotation.transpose(), inertial.child("inertia")->location()};
+                      rotation * inertia * rotation.transpose(), (rotary ? *rotary : inertial).location()};
 }
 
 // ---------------------------------------------------------------- joints
@@ -175,6 +182,17 @@ double read_unlimited(const XmlElement& limit, const char* attribute) {
   return 0;
 }
 
+/// Warns of limits of an angle that look like degrees: whole numbers, of several turns if they were radians.
+void warn_of_degrees(const XmlElement& limit, JointKind kind, double lower, double upper) {
+  constexpr double kLeast = 30, kMost = 720;
+  const double largest = std::max(std::abs(lower), std::abs(upper));
+  const bool are_whole = lower == std::round(lower) && upper == std::round(upper);
+  if (kind != JointKind::Revolute || largest < kLeast || largest > kMost || !are_whole) return;
+  limit.warning(fmt::format("lower and upper look like degrees, but are in rad, and so {:.3g} turns apart",
+                            (upper - lower) / (2 * kPi)),
+                fmt::format("lower '{}', upper '{}'", lower, upper));
+}
+
 void read_limits(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> limit = joint.child("limit");
   if (!limit || description.kind == JointKind::Fixed || joint.child("clearance")) return;
@@ -183,9 +201,14 @@ void read_limits(const XmlElement& joint, JointDescription& description) {
   if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
       !has_dependent_travel(description.kind))
     return;
-  const double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
+  double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
   if (has_dependent_travel(description.kind) && lower == upper) return;  // <limit> is given for its effort only
-  if (lower > upper) limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", lower, upper));
+  if (lower > upper) {
+    limit->warning("lower must be <= upper: the two are exchanged",
+                   fmt::format("lower '{}', upper '{}'", lower, upper));
+    std::swap(lower, upper);
+  }
+  warn_of_degrees(*limit, description.kind, lower, upper);
   if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
   description.limits = JointLimits{lower, upper, velocity, std::nullopt};
   if (limit->has("restitution")) description.limits->restitution = limit->number("restitution", kRestitution);
@@ -208,17 +231,18 @@ bool is_fixed(const XmlElement& joint) {
 /// Checks the children of a joint. Skips children without effect: axis, limits, dynamics and mimic of a fixed joint,
 /// and the range of a joint without stops.
 void check_joint_structure(const XmlElement& joint) {
-  joint.expect_at_most_one(
-      {"origin", "parent", "child", "axis2", "release", "couple", "friction", "child_origin", "clearance"});
+  joint.expect_at_most_one({"parent", "child", "axis2", "release", "couple", "friction", "child_origin", "clearance"});
+  joint.expect_first_counts({"origin"});
   check_attributes(joint, kJointAttributes);
   if (is_fixed(joint)) return;
-  joint.expect_at_most_one({"axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"});
+  joint.expect_first_counts({"axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"});
   check_attributes(joint, kMovableAttributes);
   const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
   const bool has_range = type == "revolute" || type == "prismatic";
   if (has_range || joint.child("couple")) check_attributes(joint, kRangeAttributes);
-  if (has_range && !joint.child("limit"))
-    joint.error("a " + type + " joint needs <limit effort=\"...\" velocity=\"...\" lower=\"...\" upper=\"...\"/>");
+  if (has_range && !joint.child("limit") && !joint.child("clearance"))
+    joint.warning("<limit lower=\"...\" upper=\"...\" effort=\"...\" velocity=\"...\"/> is missing: the " + type +
+                  " joint has no stops");
 }
 
 /// Returns the name of the link in <parent> or <child>. If it is missing, records an error and returns an empty text.
@@ -250,7 +274,8 @@ LinkDescription read_link(const XmlElement& unnamed) {
   description.name = unnamed.name("name").value_or("");
   description.location = unnamed.location();
   const XmlElement link = unnamed.with_name(description.name);
-  link.expect_at_most_one({"inertial", "beam", "drag"});
+  link.expect_first_counts({"inertial"});
+  link.expect_at_most_one({"beam", "drag"});
   if (const std::optional<XmlElement> inertial = link.child("inertial"))
     description.inertial = read_inertial(*inertial);
   // Give urdfdom one child at a time, since it stops reading a link at the first error.
@@ -265,6 +290,20 @@ LinkDescription read_link(const XmlElement& unnamed) {
       child.warning("is not shown: its shape must have an extent, of finite numbers");
   }
   return description;
+}
+
+void warn_of_untouchable_shapes(const XmlElement& robot) {
+  for (const XmlElement& unnamed : robot.children()) {
+    if (unnamed.tag() != "link") continue;
+    const XmlElement link = unnamed.with_name(unnamed.has("name") ? *unnamed.text("name") : "");
+    for (const XmlElement& child : link.children()) {
+      if (child.tag() != "collision" || shape_of_urdfdom(child.xml())) continue;
+      const std::optional<XmlElement> geometry = child.child("geometry");
+      const tinyxml2::XMLElement* shape = geometry ? geometry->xml().FirstChildElement() : nullptr;
+      child.warning("touches nothing: its shape must be a box, cylinder, sphere or mesh that has an extent",
+                    shape ? quoted(printed(*shape)) : "");
+    }
+  }
 }
 
 JointDescription read_joint(const XmlElement& unnamed) {
@@ -311,7 +350,11 @@ void read_travel(const XmlElement& element, JointDescription& description, const
   if (!limit) return;
   limit->expect_only({"lower", "upper", "effort", "velocity", "restitution"});
   if (limit->has("lower") || limit->has("upper")) {
-    if (limit->number("lower", positions) && limit->number("upper", positions)) read_limits(element, description);
+    const std::optional<double> lower = limit->number("lower", positions), upper = limit->number("upper", positions);
+    if (lower && upper && *lower > *upper)
+      limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", *lower, *upper));
+    else if (lower && upper)
+      read_limits(element, description);
     return;
   }
   description.effort_limit = read_unlimited(*limit, "effort");

@@ -6,8 +6,12 @@
 
 namespace flexarm::scene {
 
-/// Reads <link> without its <beam>. The name and the location are set even if there are errors.
+/// Reads <link> without its <beam>, and without shapes that have no extent or that urdfdom cannot read. The name and
+/// the location are set even if there are errors.
 LinkDescription read_link(const XmlElement& link);
+
+/// Warns of each <collision> of a <link> of <robot> that read_link() leaves out.
+void warn_of_untouchable_shapes(const XmlElement& robot);
 
 /// Reads <joint>, except its <clearance>. Names and location are set even if there are errors.
 JointDescription read_joint(const XmlElement& joint);

@@ -5,15 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "scene/scene_names.h"
+
 namespace flexarm::scene {
 namespace {
 
-constexpr const char* kWorld = "world";
 constexpr const char* kRootJoint = "root";
-
-std::string element_named(const char* tag, const std::string& name) {
-  return "<" + std::string(tag) + "> " + quoted(name);
-}
 
 template <class Named>
 const Named* find(const std::vector<Named>& things, const std::string& name) {
@@ -90,7 +87,7 @@ bool has_stops(const JointDescription& joint, const std::set<std::string>& moved
 void check_start(const JointDescription& joint, double position, const SourceLocation& location,
                  const std::string& advice, Findings& findings) {
   if (position >= joint.limits->lower && position <= joint.limits->upper) return;
-  findings.warning(location.line, element_named("joint", joint.name),
+  findings.warning(location.line, element_of("joint", joint.name),
                    fmt::format("starts outside its limits, {} to {}, and its stop will push it back{}",
                                joint.limits->lower, joint.limits->upper, advice),
                    fmt::format("'{}'", position));
@@ -120,7 +117,7 @@ void settle_root(SceneDescription& scene, const StartRequest& request, Findings&
   const LinkDescription* root = find(scene.links, scene.root_link);
   if (const double mass = clamped_mass(scene); root && mass > 0)
     findings.warning(
-        root->location.line, element_named("link", root->name),
+        root->location.line, element_of("link", root->name),
         "the root link is clamped, though it and what is fixed to it have a mass; <root "
         "type=\"floating\"/> in <simulation> lets it float, <root type=\"clamped\"/> confirms that it is clamped",
         fmt::format("'{}' kg", mass));

@@ -177,12 +177,17 @@ std::string link_in(const XmlElement& joint, const char* tag) {
 
 }  // namespace
 
+bool belongs_in_simulation(const XmlElement& element) {
+  return contains(split(words_of("simulation")->children), std::string_view(element.tag())) &&
+         (element.has("joint") || element.has("link"));
+}
+
 void warn_of_strangers(const XmlElement& robot, const std::vector<ForceElementKind>& kinds) {
   std::vector<std::string_view> own(std::begin(kOwn), std::end(kOwn));
   for (const ForceElementKind& kind : kinds) own.push_back(kind.tag);
   std::set<std::string> told;
   for (const XmlElement& child : robot.children()) {
-    if (is_contact(child)) continue;
+    if (is_contact(child) || belongs_in_simulation(child)) continue;
     const std::string advice = advice_for(child.tag(), own);
     if (!advice.empty() && told.insert(child.tag()).second) child.warning(advice);
   }

@@ -7,6 +7,10 @@
 
 namespace flexarm::scene {
 
+/// Whether an element outside <simulation> is meant as an entry of it: it has the tag of one, and names a joint or a
+/// link.
+bool belongs_in_simulation(const XmlElement& element);
+
 /// Warns of children of <robot> that neither flexarm nor any known program reads. There is one warning for each name,
 /// and it suggests the name that is probably meant. Elements with a namespace ("drake:...") are skipped. `kinds`: the
 /// kinds of force elements that flexarm reads.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "math/lfs_pointer.h"
 #include "scene/force_element_kinds.h"
 #include "scene/limits.h"
 #include "scene/parameters.h"
@@ -50,6 +51,7 @@ void check_places(const XmlElement& element, const std::vector<Place>& places) {
       if (child.tag() == place.tag && !is_here)
         child.error("<" + child.tag() + "> must be a child of <" + place.parent + ">");
     }
+    if (belongs_in_simulation(child)) child.error("<" + child.tag() + "> must be a child of <simulation>");
   }
 }
 
@@ -97,11 +99,12 @@ class SceneReader {
     add_winches(winches_, scene_, findings_);  // on the world, even if the root link of the file moves
     add_pumps(cylinders_, scene_, findings_);
     connect_tendon_sensors(scene_, findings_);
-    check_inertias(scene_, findings_);
+    settle_inertias(scene_, findings_);
     warn_of_units(scene_, findings_);
     settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
     check_contacts(scene_, findings_);
+    if (!scene_.contacts.empty() || start_.is_spawned) warn_of_untouchable_shapes(robot);
     add_disabled_pairs(disabled_, scene_);
     if (findings_.error_count() == 0) hold_followers_of_fixed_joints(scene_);
     return std::move(scene_);
@@ -247,6 +250,10 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
                                            std::string& urdf) {
   if (text.size() > kLargestFile) {
     findings.error(0, "", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
+    return std::nullopt;
+  }
+  if (is_lfs_pointer(text)) {
+    findings.error(1, "", kLfsPointerText, quoted(text.substr(0, text.find('\n'))));
     return std::nullopt;
   }
   tinyxml2::XMLDocument document;

@@ -4,6 +4,7 @@
 
 #include "flexarm/scene/tendon.h"
 #include "scene/readers.h"
+#include "scene/scene_names.h"
 #include "scene/standard_reader.h"
 
 namespace flexarm::scene {
@@ -66,7 +67,10 @@ void add_winches(const std::vector<ReadWinch>& winches, SceneDescription& scene,
     if (is_reel_taken(winch.travel, "winch", scene, findings)) continue;
     const std::size_t tendon = find_force_element(scene, "tendon", winch.tendon);
     if (tendon == scene.force_elements.size()) {
-      if (!winch.tendon.empty()) error("tendon must be the name of a <tendon>", winch.tendon);
+      if (!winch.tendon.empty())
+        error("tendon must be the name of a <tendon>" +
+                  findings.candidates(winch.tendon, force_element_names(scene, "tendon")),
+              winch.tendon);
       continue;
     }
     if (dynamic_cast<const TendonDescription&>(*scene.force_elements[tendon]).tension)

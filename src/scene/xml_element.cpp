@@ -1,11 +1,13 @@
 #include "scene/xml_element.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
+#include "flexarm/math/near_names.h"
 #include "math/number_text.h"
 #include "scene/csv_table.h"
 #include "scene/limits.h"
@@ -22,6 +24,13 @@ std::string listed(std::initializer_list<const char*> names) {
   std::string text;
   for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
   return text.empty() ? "nothing" : text;
+}
+
+/// Returns "; did you mean 'NAME'?" if one of the names is near to an unknown one; else an empty text.
+std::string meant(std::string unknown, std::initializer_list<const char*> names) {
+  if (unknown.size() > kLongestName) return "";
+  std::transform(unknown.begin(), unknown.end(), unknown.begin(), [](unsigned char c) { return std::tolower(c); });
+  return suggestion(unknown, {names.begin(), names.end()});
 }
 
 /// Parses numbers that are separated by white space. Returns nothing if one is not a finite number, or there are more
@@ -79,7 +88,7 @@ std::optional<XmlElement> XmlElement::child(const char* tag) const {
   return XmlElement(*child, "<" + std::string(tag) + "> of " + owner_, owner_, *findings_);
 }
 
-void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) const {
+void XmlElement::warn_or_refuse_repeated(std::initializer_list<const char*> tags, bool first_counts) const {
   std::map<std::string, const tinyxml2::XMLElement*> seen;
   for (const XmlElement& child : children()) {
     if (!contains(tags, child.tag())) continue;
@@ -88,19 +97,30 @@ void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) con
     const bool is_alike =
         child.xml().ShallowEqual(first->second) && child.xml().NoChildren() && first->second->NoChildren();
     const std::string expected = "at most one <" + child.tag() + "> is allowed here";
-    if (is_alike) {
+    if (is_alike)
       child.warning(expected + "; the two are identical");
-    } else {
+    else if (first_counts)
+      child.warning(expected + "; the first one counts, of line " + std::to_string(first->second->GetLineNum()) +
+                    ", and this one is ignored");
+    else
       child.error(expected);
-    }
   }
+}
+
+void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) const {
+  warn_or_refuse_repeated(tags, false);
+}
+
+void XmlElement::expect_first_counts(std::initializer_list<const char*> tags) const {
+  warn_or_refuse_repeated(tags, true);
 }
 
 void XmlElement::expect_only(std::initializer_list<const char*> attributes,
                              std::initializer_list<const char*> tags) const {
   for (const tinyxml2::XMLAttribute* a = xml_->FirstAttribute(); a; a = a->Next()) {
     if (!contains(attributes, a->Name()))
-      findings_->error(a->GetLineNum(), description_, "unknown attribute, expected " + listed(attributes),
+      findings_->error(a->GetLineNum(), description_,
+                       "unknown attribute, expected " + listed(attributes) + meant(a->Name(), attributes),
                        quoted(a->Name()));
   }
   for (const tinyxml2::XMLNode* node = xml_->FirstChild(); node; node = node->NextSibling()) {
@@ -109,7 +129,8 @@ void XmlElement::expect_only(std::initializer_list<const char*> attributes,
     findings_->error(node->GetLineNum(), description_, "no text is expected here", quoted(next_word(text)));
   }
   for (const XmlElement& child : children()) {
-    if (!contains(tags, child.tag())) child.error("unknown element, expected " + listed(tags));
+    if (!contains(tags, child.tag()))
+      child.error("unknown element, expected " + listed(tags) + meant(child.tag(), tags));
   }
 }
 

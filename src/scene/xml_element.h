@@ -62,6 +62,8 @@ class XmlElement {
   std::optional<XmlElement> child(const char* tag) const;
   /// Records an error for each repeated child with one of these tags; only a warning if it equals the first one.
   void expect_at_most_one(std::initializer_list<const char*> tags) const;
+  /// The same for elements of URDF, of which other programs read the first one: only a warning for each repeated child.
+  void expect_first_counts(std::initializer_list<const char*> tags) const;
   /// Records an error for every other attribute and child, and for text. For elements of flexarm, which no other
   /// program extends.
   void expect_only(std::initializer_list<const char*> attributes, std::initializer_list<const char*> tags = {}) const;
@@ -88,6 +90,8 @@ class XmlElement {
   std::optional<TimeFunction> function(const char* attribute) const;
 
  private:
+  void warn_or_refuse_repeated(std::initializer_list<const char*> tags, bool first_counts) const;
+
   const tinyxml2::XMLElement* xml_;
   std::string description_, owner_;
   Findings* findings_;

@@ -93,5 +93,16 @@ TEST_F(SurfaceOfFile, ThatCannotBeUsedSaysWhy) {
   EXPECT_NE(why(write("broken.dae", "<COLLADA")), "");
 }
 
+TEST_F(SurfaceOfFile, SaysThatGitLfsHasNotFetchedIt) {
+  const std::string path =
+      write("pointer.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n");
+  try {
+    surface_of_file(path, Vector3::Ones());
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "this is a Git LFS pointer, not the file: 'git lfs pull' fetches it");
+  }
+}
+
 }  // namespace
 }  // namespace flexarm::meshes

@@ -61,7 +61,7 @@ TEST(Clearances, OfLoopsHaveNamesAndLinks) {
   EXPECT_EQ(errors(play_with("<parent link=\"world\"/> <child link=\"beam\"/> <origin",
                              "<parent link=\"word\"/> <child "
                              "link=\"beam\"/> <origin")),
-            "scene.urdf:14: <loop_joint> 'guide': parent must be a link of the scene, got 'word'");
+            "scene.urdf:14: <loop_joint> 'guide': parent must be a link of the scene (world, rod, beam), got 'word'");
 }
 
 }  // namespace

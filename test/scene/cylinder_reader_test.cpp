@@ -111,7 +111,8 @@ TEST(CylinderReader, RefusesItsPositionAndItsHiddenJoints) {
   EXPECT_EQ(findings_of(scene_with(kEnds + "<limit lower='1' upper='2'/>", "<initial joint='lift' position='clamp'/>")),
             own);
   EXPECT_EQ(findings_of(scene_with(kEnds, "<effort joint='lift_hinge/1' history='1'/>")),
-            "scene.urdf:8: <effort> of simulation: joint must be the name of a joint's coordinate, got 'lift_hinge/1'");
+            "scene.urdf:8: <effort> of simulation: joint must be the name of a joint's coordinate (hinge, lift), got "
+            "'lift_hinge/1'");
   EXPECT_TRUE(read(scene_with(kEnds, "<initial joint='lift' velocity='1'/>")).scene);
 }
 

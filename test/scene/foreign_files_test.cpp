@@ -1,5 +1,6 @@
 /// Tests files with elements of other programs. They are read, with a warning where the meaning is clear.
 
+#include <algorithm>
 #include <vector>
 
 #include "scene/scene_text.h"
@@ -223,6 +224,147 @@ TEST(ForeignFiles, SensorsThatShareATopicAreTold) {
       (Texts{"scene.urdf:5: warning: <sensor> 'a-b': shares the topic 'sensors/a_b' with sensor 'a b' (line 4): in "
              "topics and bags, characters other than letters, digits and _ become _"}));
   EXPECT_EQ(said(read(scene_of(kFree + sensor("a_b") + sensor("ab")))), Texts());
+}
+
+// ---------------------------------------------------------------- what is not quite URDF, but has one plain meaning
+
+TEST(ForeignFiles, TheFirstOfTwoElementsCounts) {
+  const ReadResult result = read(
+      scene_of(joint_to("i", "a", "continuous",
+                        R"(<limit effort="10" velocity="1"/><dynamics damping="0.5"/><limit effort="30" velocity="1"/>)"
+                        "\n"
+                        R"(<dynamics damping="7"/>)") +
+               joint_to("j", "b", "continuous", "")));
+  EXPECT_EQ(said(result),
+            (Texts{"scene.urdf:2: warning: <limit> of joint 'i': at most one <limit> is allowed here; the first one "
+                   "counts, of line 2, and this one is ignored",
+                   "scene.urdf:3: warning: <dynamics> of joint 'i': at most one <dynamics> is allowed here; the first "
+                   "one counts, of line 2, and this one is ignored"}));
+  EXPECT_EQ(result.scene->joints[0].effort_limit, 10);
+  EXPECT_EQ(result.scene->joints[0].damping, 0.5);
+
+  const std::string inertia = R"(<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.025"/>)";
+  const ReadResult two =
+      read(good_scene_with(inertia, inertia + R"(<inertia ixx="9" ixy="0" ixz="0" iyy="9" iyz="0" izz="9"/>)"));
+  expect_warning(two, 17, "the first one counts, of line 17, and this one is ignored");
+  EXPECT_EQ(two.diagnostics.size(), 1u) << to_text(two.diagnostics);
+  EXPECT_NEAR(two.scene->links[1].inertial->inertia.trace(), 0.055, 1e-15);
+  const ReadResult bodies =
+      read(good_scene_with("<inertial>\n", "<inertial> <mass value=\"7\"/> " + inertia + " </inertial> <inertial>\n"));
+  expect_warning(bodies, 14, "<inertial> of link 'upper': at most one <inertial> is allowed here; the first one");
+  EXPECT_EQ(bodies.scene->links[1].inertial->mass, 7);
+}
+
+TEST(ForeignFiles, ExchangedLimitsAreExchanged) {
+  const ReadResult result =
+      read(scene_of(joint_to("i", "a", "revolute", R"(<limit lower="0.5" upper="-1.5" effort="1" velocity="1"/>)") +
+                    joint_to("j", "b", "continuous", "")));
+  EXPECT_EQ(said(result),
+            (Texts{"scene.urdf:2: warning: <limit> of joint 'i': lower must be <= upper: the two are exchanged, got "
+                   "lower '0.5', upper '-1.5'"}));
+  EXPECT_EQ(result.scene->joints[0].limits->lower, -1.5);
+  EXPECT_EQ(result.scene->joints[0].limits->upper, 0.5);
+}
+
+TEST(ForeignFiles, JointsWithoutLimitsHaveNoStops) {
+  const ReadResult result = read(scene_of(joint_to("i", "a", "revolute", "") + joint_to("j", "b", "prismatic", "")));
+  expect_warning(result, 2,
+                 "<joint> 'i': <limit lower=\"...\" upper=\"...\" effort=\"...\" velocity=\"...\"/> is missing: the "
+                 "revolute joint has no stops");
+  expect_warning(result, 3, "is missing: the prismatic joint has no stops");
+  for (const JointDescription& joint : result.scene->joints) EXPECT_FALSE(joint.limits);
+}
+
+TEST(ForeignFiles, LimitsThatLookLikeDegreesAreTold) {
+  const auto told = [](const std::string& type, const std::string& lower, const std::string& upper) {
+    const ReadResult result = read(scene_of(
+        joint_to("i", "a", type, "<limit lower=\"" + lower + "\" upper=\"" + upper + R"(" effort="1" velocity="1"/>)") +
+        joint_to("j", "b", "continuous", "")));
+    return said(result);
+  };
+  EXPECT_EQ(told("revolute", "-90", "180"),
+            (Texts{"scene.urdf:2: warning: <limit> of joint 'i': lower and upper look like degrees, but are in rad, "
+                   "and so 43 turns apart, got lower '-90', upper '180'"}));
+  EXPECT_EQ(told("revolute", "0", "45").size(), 1u);
+  EXPECT_EQ(told("revolute", "-10", "10"), Texts()) << "three turns";
+  EXPECT_EQ(told("revolute", "-62.8318", "62.8318"), Texts()) << "ten turns";
+  EXPECT_EQ(told("revolute", "-1000", "1000"), Texts()) << "as good as none";
+  EXPECT_EQ(told("prismatic", "0", "90"), Texts()) << "metres";
+}
+
+TEST(ForeignFiles, AMassWithoutInertiaIsAPoint) {
+  const ReadResult result =
+      read(good_scene_with(R"(<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.025"/>)", ""));
+  expect_warning(result, 14, "<inertial> of link 'upper': <inertia> is missing: its mass is a point");
+  EXPECT_EQ(result.scene->links[1].inertial->mass, 2);
+  EXPECT_TRUE(result.scene->links[1].inertial->inertia.isZero(0));
+}
+
+TEST(ForeignFiles, RoundedMomentsBelowZeroBecomeZero) {
+  // Principal moments -0.001, 1 and 1, turned about z by 45 degrees. The nearest inertia without a negative one has the
+  // moments 0, 1 and 1.
+  const auto inertia = [](const std::string& xx, const std::string& xy) {
+    return "<inertia ixx=\"" + xx + "\" ixy=\"" + xy + "\" ixz=\"0\" iyy=\"" + xx + R"(" iyz="0" izz="1"/>)";
+  };
+  const std::string good = R"(<origin xyz="0.1 0 0" rpy="0 0 0"/>)";
+  const auto scene = [&](const std::string& element) {
+    return R"(<robot name="r"><link name="world"/><joint name="j" type="continuous"><parent link="world"/>)"
+           R"(<child link="a"/></joint><link name="a"><inertial><mass value="1"/>)"
+           "\n" +
+           element + "</inertial></link></robot>";
+  };
+  const ReadResult result = read(scene(inertia("0.4995", "-0.5005")));
+  EXPECT_EQ(result.diagnostics.size(), 1u);
+  expect_warning(result, 2,
+                 "<inertia> of link 'a': principal moments of inertia must be >= 0: 0.001 of the largest one below 0 "
+                 "counts as rounded numbers, and 0 is taken instead, got '-0.00");
+  Matrix3 nearest;
+  nearest << 0.5, -0.5, 0, -0.5, 0.5, 0, 0, 0, 1;
+  EXPECT_LT((result.scene->links[1].inertial->inertia - nearest).norm(), 1e-14);
+  expect_one_error(scene(inertia("0.48", "-0.52")), 2, "principal moments of inertia must be >= 0");
+}
+
+TEST(ForeignFiles, TheWorldIsDeclaredIfNobodyDoesIt) {
+  const auto robot = [](const std::string& base, const std::string& parent) {
+    return "<robot name=\"r\">" + base + "<link name=\"a\"/>\n<joint name=\"j\" type=\"fixed\"><parent link=\"" +
+           parent + "\"/><child link=\"a\"/></joint></robot>";
+  };
+  const ReadResult result = read(robot("", "world"));
+  expect_warning(result, 2,
+                 "<joint> 'j': its parent is no link of the scene; <link name=\"world\"/> is added, as the root, got "
+                 "'world'");
+  EXPECT_EQ(result.scene->root_link, "world");
+  ASSERT_EQ(result.scene->links.size(), 2u);
+  expect_one_error(robot("", "map"), 2, "parent must be a link of the scene (a), got 'map'");
+  expect_one_error(robot("<link name=\"base\"/>", "world"), 2, "parent must be a link of the scene");
+}
+
+TEST(ForeignFiles, PointersOfGitLfsAreNotFiles) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1\nsize 12345\n";
+  EXPECT_EQ(findings_of(pointer),
+            "scene.urdf:1: this is a Git LFS pointer, not the file: 'git lfs pull' fetches it, got 'version "
+            "https://git-lfs.github.com/spec/v1'");
+}
+
+TEST(ForeignFiles, ShapesThatCannotTouchAreTold) {
+  const auto foot = [](const std::string& shape, const std::string& contact) {
+    return said(read(R"(<robot name="r"><link name="world"/><ground name="floor"/>)" + contact +
+                     "<link name=\"foot\">\n<collision><geometry>" + shape + "</geometry></collision></link>" +
+                     R"(<joint name="j" type="fixed"><parent link="world"/><child link="foot"/></joint></robot>)"));
+  };
+  const std::string contact = R"(<contact first="*" second="floor"/>)";
+  const auto told = [](const std::string& shape) {
+    return "scene.urdf:2: warning: <collision> of link 'foot': touches nothing: its shape must be a box, cylinder, "
+           "sphere or mesh that has an extent, got '" +
+           shape + "'";
+  };
+  EXPECT_EQ(foot("<sphere radius=\"0\"/>", contact), Texts{told("<sphere radius=\"0\"/>")});
+  EXPECT_EQ(foot("<box size=\"1 0 1\"/>", contact), Texts{told("<box size=\"1 0 1\"/>")});
+  EXPECT_EQ(foot("<sphere radius=\"0\"/>", ""), Texts()) << "nothing could touch it";
+  EXPECT_EQ(foot("<sphere radius=\"1\"/>", contact), Texts());
+  const Texts capsule = foot("<capsule radius=\"1\" length=\"2\"/>", contact);
+  EXPECT_EQ(std::count(capsule.begin(), capsule.end(), told("<capsule radius=\"1\" length=\"2\"/>")), 1);
 }
 
 }  // namespace flexarm::scene

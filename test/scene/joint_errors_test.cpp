@@ -33,13 +33,10 @@ TEST(JointErrors, Numbers) {
                "<origin> of joint 'shoulder': xyz must be 3 finite numbers");
   expect_error(R"(lower="-1")", R"(lower="low")", 10,
                "<limit> of joint 'shoulder': lower must be a finite number, got 'low'");
-  expect_error(R"(lower="-1")", R"(lower="2.5")", 10, "lower must be <= upper, got lower '2.5', upper '2'");
   expect_error(R"(effort="30")", R"(effort="x")", 10, "effort must be a finite number, got 'x'");
   expect_error(R"(damping="0.1" f)", R"(damping="-0.1" f)", 11, "damping must be >= 0");
   expect_error(R"(friction="0.2")", R"(friction="1,5")", 11, "friction must be a finite number, got '1,5'");
   expect_error(R"(multiplier="-2")", R"(multiplier="-2x")", 50, "<mimic> of joint 'finger': multiplier must be");
-  expect_error(R"(<limit lower="-1" upper="2" effort="30" velocity="4"/>)", "", 5,
-               "<joint> 'shoulder': a revolute joint needs <limit");
 }
 
 TEST(JointErrors, WhatOnlyOtherProgramsNeedIsAWarning) {
@@ -82,7 +79,7 @@ TEST(JointErrors, Structure) {
                "spherical, got 'hinge'");
   expect_error(R"(name="elbow" type="continuous")", R"(name="elbow")", 22, "attribute 'type' is missing");
   expect_error(R"(<child link="upper"/>)", R"(<child link="upper"/><child link="tip"/>)", 8, "at most one <child>");
-  expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0 2"/><axis xyz="0 0 1"/>)", 9, "at most one <axis>");
+  expect_error(R"(<parent link="world"/>)", R"(<parent link="world"/><parent link="tip"/>)", 7, "at most one <parent>");
   expect_error(R"(<child link="forearm"/>)", "", 22, "<child link=\"...\"/> is missing");
   expect_error(R"(<child link="forearm"/>)", "<child/>", 24, "attribute 'link' is missing");
 }
@@ -209,9 +206,9 @@ TEST(TreeErrors, Names) {
   expect_one_error(tree(joint("i", "w", "a") + joint("i", "a", "b") + joint("k", "b", "c")), 3,
                    "<joint> 'i': name is taken, by line 2");
   expect_one_error(tree(joint("i", "x", "a") + joint("j", "a", "b") + joint("k", "b", "c")), 2,
-                   "<joint> 'i': parent must be a link of the scene, got 'x'");
+                   "<joint> 'i': parent must be a link of the scene (w, a, b, c), got 'x'");
   expect_one_error(tree(joint("i", "w", "a") + joint("j", "a", "b") + joint("k", "b", "x")), 4,
-                   "<joint> 'k': child must be a link of the scene, got 'x'");
+                   "<joint> 'k': child must be a link of the scene (w, a, b, c), got 'x'");
   expect_one_error(tree(joint("i", "w", "a", "floating") + joint("i/x", "a", "b", "continuous") + joint("k", "b", "c")),
                    3, "a coordinate's name must be unique, but joint 'i' has one of this name, got 'i/x'");
 }
@@ -231,7 +228,7 @@ TEST(TreeErrors, Shape) {
 TEST(TreeErrors, Mimic) {
   const std::string end = joint("k", "b", "c");
   expect_one_error(tree(joint("i", "w", "a", "continuous", mimic("x")) + joint("j", "a", "b") + end), 2,
-                   "<joint> 'i': mimic joint must be a joint of the scene, got 'x'");
+                   "<joint> 'i': mimic joint must be a joint of the scene (j, k), got 'x'");
   expect_one_error(tree(joint("i", "w", "a", "continuous", mimic("i")) + joint("j", "a", "b") + end), 2,
                    "a joint must not mimic itself");
   expect_one_error(tree(joint("i", "w", "a", "floating", mimic("j")) + joint("j", "a", "b", "continuous") + end), 2,

@@ -10,7 +10,6 @@ TEST(LinkErrors, Inertial) {
   expect_error(R"(<mass value="2"/>)", R"(<mass value="nan"/>)", 16, "value must be a finite number, got 'nan'");
   expect_error(R"(<mass value="2"/>)", R"(<mass/>)", 16, "attribute 'value' is missing");
   expect_error(R"(<mass value="2"/>)", "", 14, "<inertial> of link 'upper': <mass> is missing");
-  expect_error(R"(<mass value="2"/>)", R"(<mass value="2"/><mass value="3"/>)", 16, "at most one <mass>");
   expect_error(R"(ixx="0.01")", R"(ixx="1e999")", 17, "ixx must be a finite number, got '1e999'");
   expect_error(R"(ixx="0.01")", "", 17, "<inertia> of link 'upper': attribute 'ixx' is missing");
   expect_error(R"(ixy="0")", R"(ixy="5")", 17, "principal moments of inertia must be >= 0");

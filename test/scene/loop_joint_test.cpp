@@ -93,7 +93,7 @@ TEST(LoopJoint, Structure) {
   const std::string name = R"(name="foot" type="fixed")";
   expect_one_error(portal(loop(name, R"(<parent link="world"/>)")), 7, "<child link=\"...\"/> is missing");
   expect_one_error(portal(loop(name, R"(<parent link="world"/> <child link="nobody"/>)")), 7,
-                   "<loop_joint> 'foot': child must be a link of the scene, got 'nobody'");
+                   "<loop_joint> 'foot': child must be a link of the scene (world, post, lintel, leg), got 'nobody'");
   expect_one_error(portal(loop(R"(name="b" type="fixed")", kLinks)), 7, "<loop_joint> 'b': name is taken, by line 5");
   expect_one_error(portal(loop(R"(name="foot" type="hinge")", kLinks)), 7, "type must be one of fixed, revolute");
   expect_one_error(portal(loop(R"(name="foot")", kLinks)), 7, "attribute 'type' is missing");

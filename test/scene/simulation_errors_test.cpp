@@ -72,14 +72,15 @@ TEST(SimulationErrors, InitialConditions) {
   expect_entry_error(R"(<initial link="tip"/>)", "attribute 'linear' or 'angular' is missing");
   expect_entry_error(R"(<initial joint="elbow" position="x"/>)", "position must be a finite number, got 'x'");
   expect_entry_error(R"(<initial joint="elbo" position="1"/>)",
-                     "joint must be the name of a joint's coordinate, got 'elbo'");
+                     "joint must be the name of a joint's coordinate (elbow, shoulder, wrist/1, wrist/2), got 'elbo'");
   expect_entry_error(R"(<initial joint="wrist" position="1"/>)",
                      "joint must be one of 'wrist/1', 'wrist/2', got 'wrist'");
   expect_entry_error(R"(<initial joint="shoulder" position="1"/>)", "the coordinate has an entry of this kind already");
   expect_entry_error(R"(<initial joint="finger" position="1"/>)",
                      "a joint that mimics another one, 'shoulder', has no coordinate");
   expect_entry_error(R"(<initial joint="wrist/2" position="1"/>)", "the coordinate's <motion> prescribes it already");
-  expect_entry_error(R"(<initial link="leg" linear="1 0 0"/>)", "link must be a link of the scene, got 'leg'");
+  expect_entry_error(R"(<initial link="leg" linear="1 0 0"/>)",
+                     "link must be a link of the scene (tip, upper, hand, world, forearm), got 'leg'");
   expect_entry_error(R"(<initial link="forearm" linear="1 0 0"/>)", "the link has an initial velocity already");
   expect_entry_error(R"(<initial link="world" linear="1 0 0"/>)", "the root link is clamped and cannot move");
 }
@@ -87,7 +88,8 @@ TEST(SimulationErrors, InitialConditions) {
 TEST(SimulationErrors, Loads) {
   expect_entry_error(R"(<load link="tip"/>)", "<load> of simulation: attribute 'force' or 'moment' is missing");
   expect_entry_error(R"(<load force="1 0 0"/>)", "attribute 'link' is missing");
-  expect_entry_error(R"(<load link="toe" force="1 0 0"/>)", "link must be a link of the scene, got 'toe'");
+  expect_entry_error(R"(<load link="toe" force="1 0 0"/>)",
+                     "link must be a link of the scene (tip, world, upper, hand, forearm), got 'toe'");
   expect_entry_error(R"(<load link="tip" force="1 0"/>)", "force must be 3 finite numbers");
   expect_entry_error(R"(<load link="tip" force="1 0 0" frame="body"/>)",
                      "frame must be 'world' or 'follower', got 'body'");
@@ -115,8 +117,69 @@ TEST(SimulationErrors, MotionsAndEfforts) {
 TEST(SimulationErrors, Probes) {
   expect_entry_error(R"(<probe link="tip"/>)", "<probe> of simulation: attribute 'name' is missing");
   expect_entry_error(R"(<probe name="p"/>)", "attribute 'link' is missing");
-  expect_entry_error(R"(<probe name="p" link="toe"/>)", "link must be a link of the scene, got 'toe'");
+  expect_entry_error(R"(<probe name="p" link="toe"/>)",
+                     "link must be a link of the scene (tip, world, upper, hand, forearm), got 'toe'");
   expect_entry_error(R"(<probe name="end" link="tip"/>)", "<probe> 'end': name is taken, by line 67");
+}
+
+// Elsewhere they would have no effect.
+TEST(SimulationErrors, EntriesThatNameAJointOrALinkBelongInSimulation) {
+  const auto expect = [](const std::string& entry, const std::string& tag) {
+    expect_error("<!-- 2 -->", entry, 2, "<" + tag + "> of robot 'arm': <" + tag + "> must be a child of <simulation>");
+  };
+  expect(R"(<effort joint="elbow" history="1"/>)", "effort");
+  expect(R"(<motion joint="elbow" position="1"/>)", "motion");
+  expect(R"(<initial joint="elbow" position="1"/>)", "initial");
+  expect(R"(<initial link="upper" linear="1 0 0"/>)", "initial");
+  expect(R"(<load link="upper" force="1 0 0"/>)", "load");
+  expect(R"(<distributed_load link="tip" force="1 0 0"/>)", "distributed_load");
+  expect(R"(<probe name="p" link="tip"/>)", "probe");
+  // Without a name of the scene it is another program's.
+  expect_warning(read(good_scene_with("<!-- 2 -->", "<effort/>")), 2, "has no effect here: it belongs in <simulation>");
+}
+
+// ---------------------------------------------------------------- unknown names
+
+TEST(UnknownNames, AreAnsweredWithTheNearestOnes) {
+  const std::string links = "(hand, world, tip, upper, forearm)";
+  expect_error(R"(<parent link="upper"/>)", R"(<parent link="hnad"/>)", 22,
+               "<joint> 'elbow': parent must be a link of the scene " + links + ", got 'hnad'");
+  expect_error(R"(<probe name="end" link="tip")", R"(<probe name="end" link="hnad")", 67,
+               "link must be a link of the scene " + links + ", got 'hnad'");
+  expect_error(R"(<effort joint="elbow")", R"(<effort joint="elbw")", 66,
+               "joint must be the name of a joint's coordinate (elbow, ");
+  expect_error(R"(<mimic joint="shoulder" m)", R"(<mimic joint="sholder" m)", 47,
+               "mimic joint must be a joint of the scene (shoulder, ");
+  expect_error(R"(first="*")", R"(first="hnad")", 76, "first must be a link or a ground of the scene (hand, ");
+}
+
+TEST(UnknownNames, AreNotSoughtForLong) {
+  std::string text = R"(<robot name="r"><link name="world"/>)";
+  for (int i = 0; i < 3000; ++i) {
+    const std::string name = std::string(30, 'a') + std::to_string(i);
+    text += "<link name=\"" + name + "\"/><joint name=\"j" + std::to_string(i) + "\" type=\"fixed\"><parent link=\"b" +
+            name + "\"/><child link=\"" + name + "\"/></joint>\n";
+  }
+  const ReadResult result = read(text + "</robot>");
+  EXPECT_FALSE(result.scene);
+  EXPECT_NE(result.diagnostics.front().text().find("parent must be a link of the scene (aaa"), std::string::npos);
+  EXPECT_NE(result.diagnostics[500].text().find("parent must be a link of the scene, got"), std::string::npos);
+}
+
+TEST(UnknownNames, OfAttributesAreAnsweredWithTheKnownOne) {
+  const auto expect = [](const std::string& attribute, const std::string& meant) {
+    const std::string servo = "<servo joint=\"elbow\" mode=\"position\" kp=\"1\" " + attribute + "=\"1\"/>";
+    std::string text = good_scene_with("<!-- 2 -->", servo);
+    const std::string found = findings_of(text);
+    EXPECT_NE(found.find("did you mean '" + meant + "'?, got '" + attribute + "'"), std::string::npos) << found;
+  };
+  expect("p", "kp");
+  expect("Kd", "kd");
+  expect("setpoint", "set_point");
+  expect_error(R"(<orientation y="0 2 0"/>)", R"(<orientation y="0 2 0" z="1 0 0"/>)", 33,
+               "unknown attribute, expected y, got 'z'");
+  expect_error(R"(<line to="1 0 0" twist="0.5"/>)", R"(<lines to="1 0 0" twist="0.5"/> <line to="1 0 0"/>)", 30,
+               "unknown element, expected line, arc; did you mean 'line'?");
 }
 
 }  // namespace flexarm::scene

@@ -97,7 +97,7 @@ TEST(Start, ClampErrors) {
   expect(R"(<initial joint="wrist/1" position="clamp"/>)", "only for a joint with lower and upper limits");
   expect(R"(<initial joint="finger" position="clamp"/>)",
          "a joint that mimics another one, 'shoulder', has no coordinate");
-  expect(R"(<initial joint="knee" position="clamp"/>)", "joint must be the name of a joint's coordinate, got 'knee'");
+  expect(R"(<initial joint="knee" position="clamp"/>)", "joint must be the name of a joint's coordinate (elbow, ");
   expect_one_error(good_scene_with("<simulation>", R"(<simulation start="here">)"), 58,
                    "start must be one of given, clamp, got 'here'");
   expect_one_error(good_scene_with("<simulation>", R"(<simulation massless="yes">)"), 58,

@@ -84,7 +84,7 @@ TEST(TendonReader, ReportsErrors) {
       {scene_of("name='rope' ea='1'><via link='base'/><pulley link='load' axis='0 1 0' radius='0.1'/>"),
        in + named + ": must not begin or end on a pulley without grips=\"true\""},
       {scene_of("name='rope' ea='1'>" + kVias, "<winch name='w' tendon='tope'/>"),
-       "scene.urdf:6: <winch> 'w': tendon must be the name of a <tendon>, got 'tope'"},
+       "scene.urdf:6: <winch> 'w': tendon must be the name of a <tendon> (rope), got 'tope'"},
       {scene_of("name='rope' tension='1'>" + kVias, "<winch name='w' tendon='rope'/>"),
        "scene.urdf:6: <winch> 'w': a tendon of given tension has no length to pay out: give it ea, got 'rope'"},
       {scene_of("name='rope' ea='1'>" + kVias, "<winch name='flight' tendon='rope'/>"),

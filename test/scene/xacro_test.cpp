@@ -34,8 +34,8 @@ TEST(Xacro, CallsThatNoExpansionGivesAMeaningAreWarnings) {
 }
 
 TEST(Xacro, HasNoNameInARootWithoutOne) {
-  expect_one_error("<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:macro name=\"leg\"/></robot>", 2,
-                   "this is xacro");
+  expect_one_error("<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:include filename=\"leg\"/></robot>",
+                   2, "this is xacro");
 }
 
 TEST(Xacro, LeavesTracesThatDoNotMatter) {
@@ -44,6 +44,46 @@ TEST(Xacro, LeavesTracesThatDoNotMatter) {
   EXPECT_TRUE(named.diagnostics.empty()) << to_text(named.diagnostics);
   const ReadResult foreign = read(good_scene_with(R"(<gazebo anything="goes"/>)", R"x(<gazebo path="$(find arm)"/>)x"));
   EXPECT_TRUE(foreign.diagnostics.empty()) << to_text(foreign.diagnostics);
+}
+
+TEST(Xacro, DefinitionsThatNothingUsesAreAWarning) {
+  const auto read_with = [](const std::string& definitions) {
+    return read(good_scene_with("<!-- 2 -->", definitions));
+  };
+  const ReadResult one = read_with(R"(<xacro:property name="width" value=".2"/>)");
+  expect_warning(
+      one, 2, "<xacro:property> of robot: is for xacro, and has no effect: nothing in this file uses it, got 'width'");
+  EXPECT_EQ(one.diagnostics.size(), 1u) << to_text(one.diagnostics);
+  // What an unused macro contains does not matter.
+  const ReadResult many = read_with(
+      R"x(<xacro:macro name="leg" params="side"> <link name="${side}_leg"/> <xacro:include filename="$(find x)/y"/> )x"
+      R"x(<xacro:if value="${width}"/> <xacro:hip side="${side}"/> </xacro:macro> )x"
+      R"x(<xacro:property name="width" value=".2"/> <xacro:arg name="side" default="left"/>)x");
+  expect_warning(many, 2,
+                 "<xacro:macro> of robot: is for xacro, and has no effect (as have 2 more definitions): nothing");
+  EXPECT_EQ(many.diagnostics.size(), 1u) << to_text(many.diagnostics);
+  EXPECT_EQ(many.scene->links.size(), read(kGoodScene).scene->links.size());
+}
+
+TEST(Xacro, DefinitionsThatSomethingUsesAreRefused) {
+  const auto expect = [](const std::string& definition, const std::string& from, const std::string& to) {
+    std::string text = good_scene_with("<!-- 2 -->", definition);
+    text.replace(text.find(from), from.size(), to);
+    expect_one_error(text, 2, "this is xacro and must be expanded to URDF first");
+  };
+  const std::string child = R"(<child link="upper"/>)";
+  expect(R"(<xacro:property name="m" value="2"/>)", R"(<mass value="2"/>)", R"(<mass value="${2 * m}"/>)");
+  // Without its property, pi would be that of flexarm.
+  expect(R"(<xacro:property name="pi" value="3"/>)", R"(rpy="0 0 1.5707963267948966")", R"(rpy="0 0 ${pi/2}")");
+  expect(R"(<xacro:property name="w" value="2"/>)", R"(<box size="1 1 1"/>)", R"(<box size="${w} 1 1"/>)");
+  expect(R"(<xacro:arg name="a" default="2"/>)", R"(<box size="1 1 1"/>)", R"x(<box size="$(arg a) 1 1"/>)x");
+  expect(R"(<xacro:macro name="leg"/>)", child, child + "<xacro:leg/>");
+  expect(R"(<xacro:macro name="leg"/>)", child, child + "<leg/>");  // as old files call it
+  expect(R"(<xacro:property name="o"> <a/> </xacro:property>)", child, child + R"(<xacro:insert_block name="o"/>)");
+  // A word that only contains the name, and what other programs read, is no use.
+  std::string text = good_scene_with("<!-- 2 -->", R"(<xacro:property name="i" value="3"/>)");
+  text.replace(text.find("1.5707963267948966"), 18, "${pi/2}");
+  expect_warning(read(text), 2, "nothing in this file uses it");
 }
 
 }  // namespace flexarm::scene

@@ -145,7 +145,7 @@ TEST(ForceElements, HaveErrorsWithTheirLines) {
   const std::string text = to_text(result.diagnostics);
   const std::string place = "cart.urdf:7: <strut> of robot 'cart': ";
   for (const std::string& error :
-       {place + "cubic must be >= 0, got '-1'", place + "to must be a link of the scene, got 'nobody'"})
+       {place + "cubic must be >= 0, got '-1'", place + "to must be a link of the scene (world, cart), got 'nobody'"})
     EXPECT_NE(text.find(error), std::string::npos) << text;
   EXPECT_FALSE(result.scene);
   EXPECT_EQ(text.find("has no effect"), std::string::npos) << text;

@@ -93,7 +93,7 @@ TEST(TendonPorts, ASensorMeasuresLengthAndTension) {
 
 TEST(TendonPorts, SensorsOfNoTendonAreRefused) {
   const auto first = [](const std::string& sensor) { return hoist(sensor).diagnostics.at(0).text(); };
-  EXPECT_NE(first(R"(tendon="rop")").find("<sensor> 'cell': tendon must be the name of a <tendon>, got 'rop'"),
+  EXPECT_NE(first(R"(tendon="rop")").find("<sensor> 'cell': tendon must be the name of a <tendon> (rope), got 'rop'"),
             std::string::npos);
   EXPECT_NE(first("").find("attribute 'tendon' is missing"), std::string::npos);
   EXPECT_NE(first(R"(tendon="rope" at="0 0 1")").find("a sensor of a tendon has no such attribute, got '0 0 1'"),

@@ -51,11 +51,14 @@ inline std::string nearest_listed(std::string_view typed, const std::vector<std:
   return names.size() > listed ? list + " and " + std::to_string(names.size() - listed) + " others" : list;
 }
 
-/// Returns a text such as "; did you mean 'simulate'?" if one of the names is near enough; else an empty text.
+/// Returns a text such as "; did you mean 'simulate'?" if one of the names is near enough, with a letter in common;
+/// else an empty text.
 inline std::string suggestion(std::string_view typed, const std::vector<std::string>& names) {
   if (names.empty()) return "";
   std::string meant = nearest_first(typed, names).front();
-  bool is_near = misspellings(typed, meant) <= std::max(1, static_cast<int>(meant.size()) / 3);
+  const int distance = misspellings(typed, meant);
+  bool is_near = distance <= std::max(1, static_cast<int>(meant.size()) / 3) &&
+                 distance < static_cast<int>(std::max(typed.size(), meant.size()));
   for (const std::string& name : names)  // or if `typed` is the beginning of a name
     if (!is_near && typed.size() > 2 && name.compare(0, typed.size(), typed) == 0) {
       meant = name;
