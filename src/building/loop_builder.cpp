@@ -10,14 +10,11 @@
 
 #include "building/elementary_joints.h"
 #include "building/model_builder.h"
+#include "building/places_at_start.h"
 #include "joints/joint_kinematics.h"
 
 namespace flexarm {
 namespace {
-
-/// Largest gap between the frames of a closing joint, relative to the extent of the mechanism. A smaller gap may result
-/// from rounded numbers in the scene.
-constexpr double kLargestGap = 1e-6;
 
 /// Nodes whose poses determine the pose of a joint's slave; none for the world.
 std::vector<int> masters(const Model& model, const JointMap& joint) {
@@ -111,8 +108,8 @@ void LoopBuilder::add(const scene::JointDescription& joint) {
   std::vector<JointMap> maps = elementary_joints(joint);
   NodePose meeting{frame.position, frame.orientation, frame.orientation.toRotationMatrix()};
   for (const JointMap& map : maps) meeting = slave_pose(map, meeting, Released());
-  const Pose child_frame = mechanism_.pose_of(child.node) * child.offset * joint.child_origin;
-  const double gap = (meeting.position - child_frame.position).norm();
+  const double gap =
+      loop_gap(joint, mechanism_.pose_of(parent.node) * parent.offset, mechanism_.pose_of(child.node) * child.offset);
   if (!(gap <= largest_gap_))
     throw ModelError(where + "the loop is open at the start: the joint's frames in parent and child are " +
                      std::to_string(gap) + " m apart");

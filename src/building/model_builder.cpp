@@ -97,18 +97,47 @@ bool has_winches(const scene::SceneDescription& scene) {
   const std::string start = built.dependent.empty() ? "" : "start elsewhere by <initial>, ";
   throw ModelError(
       text + scene.file + ": give the links beyond these joints an <inertial> or a <beam>, " + start +
-      "or hold those with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)" +
+      "or hold those with one coordinate, and frames without any inertia, where they are by massless=\"lock\" of "
+      "<simulation> (--massless lock)" +
       (has_winches(scene) ? "; a winch or a pump gets its inertia by <drive rotor_inertia>" : ""));
 }
 
-/// The scene with constant motions of these coordinates, instead of anything else that it says about them.
+/// Makes joints fixed, where they start, that rotate freely, and none of whose coordinates moves any inertia: no motion
+/// could prescribe a free rotation. `massless`: names of such coordinates. Returns the names of all coordinates of
+/// these joints.
+std::set<std::string> fix_massless_frames(const Model& model, const std::set<std::string>& massless,
+                                          scene::SceneDescription& scene) {
+  const InitialPositions positions(scene);
+  std::set<std::string> fixed;
+  for (scene::JointDescription& joint : scene.joints) {
+    if ((joint.kind != scene::JointKind::Floating && joint.kind != scene::JointKind::Spherical) || joint.is_hidden)
+      continue;
+    const std::vector<std::string> names = coordinate_names(joint);
+    if (!std::all_of(names.begin(), names.end(), [&](const auto& name) { return massless.count(name) > 0; })) continue;
+    const auto first = std::find_if(model.coordinates.begin(), model.coordinates.end(),
+                                    [&](const Coordinate& coordinate) { return coordinate.name == names.front(); });
+    Pose start{Vector3::Zero(), model.initial_released[first->joint].rotation};
+    if (joint.kind == scene::JointKind::Floating)
+      start.position = {positions.of(names[0]), positions.of(names[1]), positions.of(names[2])};
+    joint.origin = joint.origin * start;
+    joint.kind = scene::JointKind::Fixed;
+    fixed.insert(names.begin(), names.end());
+  }
+  return fixed;
+}
+
+/// The scene with constant motions of these coordinates, or with fixed joints, instead of anything else that it says
+/// about them.
 scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltModel& built) {
-  std::set<std::string> locked;
+  std::set<std::string> massless;
+  for (const int index : built.massless) massless.insert(built.model.coordinates[index].name);
+  std::set<std::string> locked = fix_massless_frames(built.model, massless, scene);
   std::vector<int> undetermined = built.massless;
   undetermined.insert(undetermined.end(), built.dependent.begin(), built.dependent.end());
   for (const int index : undetermined) {
     const Coordinate& coordinate = built.model.coordinates[index];
-    if (coordinate.is_angle) continue;  // a component of a free rotation, which no motion can prescribe
+    // No motion can prescribe a component of a free rotation.
+    if (coordinate.is_angle || locked.count(coordinate.name) > 0) continue;
     locked.insert(coordinate.name);
     const Released& start = built.model.initial_released[coordinate.joint];
     // A function of time instead of a number, so that the joint does not become a HeldJoint: there is nothing to merge

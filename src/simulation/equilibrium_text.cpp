@@ -17,7 +17,7 @@ constexpr std::size_t kMostNames = 6;
 /// Uncertainty of a coordinate above which it is reported [rad or m].
 constexpr double kWeak = 1e-6;
 
-/// Names of the joints that move in at least one free mode.
+/// Names of the joints that move in at least one free mode: first those on the root link, which carry the others.
 std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, const Model& model,
                                        const std::vector<Mode>& modes) {
   const auto moves = [&](const std::string& name) {
@@ -27,14 +27,15 @@ std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, con
              return mode.is_free() && std::abs(mode.coordinate_motion[coordinate - model.coordinates.begin()]) > kMoves;
            });
   };
-  std::vector<std::string> names;
+  std::vector<std::string> names, carried;
   for (const auto* joints : {&scene.joints, &scene.loop_joints})
     for (const scene::JointDescription& joint : *joints) {
       const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
       if (std::any_of(suffixes.begin(), suffixes.end(),
                       [&](const std::string& suffix) { return moves(joint.name + suffix); }))
-        names.push_back(joint.name);
+        (joint.parent == scene.root_link ? names : carried).push_back(joint.name);
     }
+  names.insert(names.end(), carried.begin(), carried.end());
   return names;
 }
 

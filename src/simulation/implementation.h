@@ -13,6 +13,7 @@
 
 #include "building/cylinder_places.h"
 #include "building/model_builder.h"
+#include "building/places_at_start.h"
 #include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
@@ -79,9 +80,9 @@ struct Simulation::Implementation {
         start_warnings(std::move(placed.warnings)) {
     require_suitable_slides(scene, scheme);
     require_suitable_refinement(scene, scheme, model);
-    for (scene::Diagnostic& held : held_joints(scene, model)) start_warnings.push_back(std::move(held));
-    for (scene::Diagnostic& doubt : doubts_about_scheme(scene, model, scheme))
-      start_warnings.push_back(std::move(doubt));
+    for (const scene::Diagnostics& found : {held_joints(scene, model), open_loops(scene, model),
+                                            joints_beyond_beams(scene), doubts_about_scheme(scene, model, scheme)})
+      start_warnings.insert(start_warnings.end(), found.begin(), found.end());
     const std::set<std::string> hidden = hidden_coordinates(scene);
     for (const Coordinate& coordinate : model.coordinates) {
       if (hidden.count(coordinate.name) > 0) break;  // the last ones

@@ -68,15 +68,23 @@ std::set<std::string> hidden_coordinates(const scene::SceneDescription& scene) {
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model) {
   std::set<std::string> driven;
   for (const scene::PrescribedMotion& motion : scene.motions) driven.insert(motion.coordinate);
-  std::set<std::string> held;
-  for (const Coordinate& coordinate : model.coordinates)
+  std::set<std::string> held, all;
+  for (const Coordinate& coordinate : model.coordinates) {
+    all.insert(coordinate.name);
     if (coordinate.motion >= 0 && driven.count(coordinate.name) == 0) held.insert(coordinate.name);
+  }
   scene::Diagnostics findings;
-  for (const scene::JointDescription& joint : scene.joints)
-    for (const std::string& suffix : scene::coordinate_suffixes(joint))
-      if (held.count(joint.name + suffix) > 0)
-        findings.push_back(warning(joint.location, "<joint> '" + joint.name + suffix + "'",
-                                   "is held where it starts, since it moves nothing that has inertia"));
+  const auto tell = [&](const scene::JointDescription& joint, const std::string& suffix) {
+    findings.push_back(warning(joint.location, "<joint> '" + joint.name + suffix + "'",
+                               "is held where it starts, since it moves nothing that has inertia"));
+  };
+  for (const scene::JointDescription& joint : scene.joints) {
+    const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
+    if (!suffixes.empty() && all.count(joint.name + suffixes.front()) == 0)
+      tell(joint, "");  // it was made a fixed joint
+    for (const std::string& suffix : suffixes)
+      if (held.count(joint.name + suffix) > 0) tell(joint, suffix);
+  }
   return findings;
 }
 

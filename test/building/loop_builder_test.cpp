@@ -3,6 +3,7 @@
 
 #include "building/expect_model_error.h"
 #include "building/model_builder.h"
+#include "building/places_at_start.h"
 #include "joints/closure_maps.h"
 #include "joints/joint_kinematics.h"
 #include "support/loops.h"
@@ -157,7 +158,43 @@ TEST(LoopBuilder, OpenAtTheStart) {
                "s.urdf:17: <loop_joint> 'hip': the loop is open at the start: the joint's frames in parent and child "
                "are 0.020000 m apart");
   b.scene.loop_joints[0].origin.position.x() -= 0.02 - 1e-7;
-  EXPECT_NO_THROW(build_model(b.scene));
+  const Model model = build_model(b.scene);
+  EXPECT_TRUE(open_loops(b.scene, model).empty());
+  b.scene.loop_joints[0].origin.position.x() += 2e-4 * model.length_scale;
+  expect_error(b.scene, "the loop is open at the start");
+}
+
+/// A parallelogram of rigid links; the place of the loop joint on the rocker is off by `gap` along x.
+SceneBuilder parallelogram_open_by(double gap) {
+  SceneBuilder b;
+  b.body("crank", 1, {0, 0, 0.25}, Matrix3::Identity());
+  b.body("rocker", 1, {0, 0, 0.25}, Matrix3::Identity());
+  b.body("coupler", 1, {0.15, 0, 0}, Matrix3::Identity());
+  b.joint("a", JointKind::Continuous, "world", "crank", {0, 0, 0}, {0, 1, 0});
+  b.joint("b", JointKind::Continuous, "world", "rocker", {0.3, 0, 0}, {0, 1, 0});
+  b.joint("c", JointKind::Continuous, "crank", "coupler", {0, 0, 0.5}, {0, 1, 0});
+  scene::JointDescription loop = b.scene.joints.back();
+  loop.name = "d";
+  loop.parent = "coupler", loop.child = "rocker";
+  loop.origin.position = {0.3, 0, 0};
+  loop.child_origin.position = {gap, 0, 0.5};
+  loop.location = {"s.urdf", 17};
+  b.scene.loop_joints.push_back(loop);
+  return b;
+}
+
+TEST(LoopBuilder, ClosesASmallGapOnTheChild) {
+  const SceneBuilder b = parallelogram_open_by(1e-5);
+  const Model model = build_model(b.scene);
+  const scene::Diagnostics told = open_loops(b.scene, model);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].text(),
+            "s.urdf:17: warning: <loop_joint> 'd': the loop is open at the start; its place on link 'rocker' is moved "
+            "to close it, got '1e-05' m");
+  const Model closed = build_model(parallelogram_open_by(0).scene);
+  ASSERT_EQ(model.closures.size(), 1u);
+  EXPECT_LT((model.closures[0].child_arm - closed.closures[0].child_arm).norm(), 1e-15);
+  EXPECT_LT((model.closures[0].parent_arm - closed.closures[0].parent_arm).norm(), 1e-15);
 }
 
 TEST(LoopBuilder, NothingStartsElsewhere) {

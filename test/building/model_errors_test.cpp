@@ -69,10 +69,33 @@ TEST(ModelErrors, MasslessJointsAreHeldWhereTheyStartOnDemand) {
   EXPECT_LE(model.initial_velocity[model.joints[held.joint].slave].norm(), 4e-11);
 }
 
-TEST(ModelErrors, AFreeRotationWithoutInertiaCannotBeHeld) {
+TEST(ModelErrors, FramesWithoutInertiaAreFixedWhereTheyStartOnDemand) {
+  for (const JointKind kind : {JointKind::Spherical, JointKind::Floating}) {
+    SceneBuilder builder = arm();
+    builder.scene.links.push_back({"ghost", {}, {}, {}});
+    builder.joint("idle", kind, "arm", "ghost", {0.1, 0, 0});
+    const Vector3 turn(0.3, -0.2, 0.7);
+    for (int k = 0; k < 3; ++k)
+      builder.scene.initial_joints.push_back({std::string("idle/r") + "xyz" [k], turn[k], 0, {}, true});
+    if (kind == JointKind::Floating) builder.scene.initial_joints.push_back({"idle/y", 0.5, 0, {}, true});
+    builder.scene.efforts.push_back({"idle/rx", TimeFunction(5), {}});
+    expect_error(builder.scene, "'idle/rx' moves nothing");
+    builder.scene.lock_massless = true;
+    const Model model = build_model(builder.scene);
+    EXPECT_EQ(model.coordinates.size(), 1u);
+    const Attachment &carrier = model.links[1].frame, &ghost = model.links[2].frame;
+    ASSERT_EQ(ghost.node, carrier.node);
+    const Pose place = carrier.offset.inverse() * ghost.offset;
+    EXPECT_LT((place.position - Vector3(0.1, kind == JointKind::Floating ? 0.5 : 0, 0)).norm(), 1e-15);
+    const Matrix3 expected = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    EXPECT_LT((place.orientation.toRotationMatrix() - expected).norm(), 1e-14);
+  }
+}
+
+TEST(ModelErrors, AFreeRotationOfAPointMassCannotBeHeld) {
   SceneBuilder builder = arm();
-  builder.scene.links.push_back({"ghost", {}, {}, {}});
-  builder.joint("idle", JointKind::Spherical, "arm", "ghost");
+  builder.body("bead", 1, Vector3::Zero(), Matrix3::Zero());
+  builder.joint("idle", JointKind::Floating, "world", "bead");
   builder.scene.lock_massless = true;
   expect_error(builder.scene, "'idle/rx' moves nothing");
 }
