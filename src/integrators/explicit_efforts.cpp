@@ -68,6 +68,27 @@ void ExplicitStep::add_passive(std::size_t coordinate, const ExplicitRotors::Mot
   change[work_ + 1] += coil.dissipated;
 }
 
+Eigen::MatrixXd ExplicitStep::mobility(const State& state, double step) {
+  last_nodes_.clear();
+  pack(state);
+  begin_[work_] = begin_[work_ + 1] = 0;
+  find_values(state.time, step, 0);
+  if (dependent_.any() && !begin_dependent(state, step, begin_[work_])) return {};
+  const auto changes_by = [&](const std::vector<double>& efforts) {
+    std::vector<double> change(begin_.size());
+    if (place(0, begin_)) accelerate(0, efforts.data(), change);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(change.data() + rates_, bodies_.rate_count()));
+  };
+  const Eigen::VectorXd without = changes_by(no_efforts_);
+  Eigen::MatrixXd out(bodies_.rate_count(), bodies_.rate_count());
+  for (int i = 0; i < bodies_.rate_count(); ++i) {
+    std::vector<double> unit = no_efforts_;
+    unit[static_cast<std::size_t>(i)] = 1;
+    out.col(i) = changes_by(unit) - without;
+  }
+  return out;
+}
+
 void ExplicitStep::add_loads(const State& state, std::vector<double>& change) {
   for_each_load(model_, state, values_, bodies_, [&](const NodalLoad& load, const Vector6& wrench) {
     bodies_.add_force(load.node, wrench);

@@ -77,13 +77,17 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
   penalties_.reserve(model.coordinates.size()), places_.reserve(model.coordinates.size());
   for (const Coordinate& coordinate : model.coordinates) {
     penalties_.push_back(stop_penalty(coordinate, scheme.contact_time));
-    places_.push_back(is_held(model, coordinate) ? -1 : joints_[coordinate.joint].first_rate + coordinate.component);
+    places_.push_back(rate_of(coordinate));
     if (places_.back() >= 0) armatures_[places_.back()] = armature(model, coordinate);
   }
   for (std::vector<double>* numbers : {&begin_, &stage_, &before_, &last_change_})
     numbers->resize(own_ + rotors_.size());
   changes_.assign(tableau_.weights.size(), begin_);
   last_commands_.resize(model.coordinates.size());
+}
+
+int ExplicitStep::rate_of(const Coordinate& coordinate) const {
+  return is_held(model_, coordinate) ? -1 : joints_[coordinate.joint].first_rate + coordinate.component;
 }
 
 // ---------------------------------------------------------------- numbers and state

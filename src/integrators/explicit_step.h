@@ -31,6 +31,13 @@ class ExplicitStep {
   /// computed at its end. Without it, a run that continues from a restored state has the same bits.
   StepResult::Reason advance(State& state, double step, bool reuses);
 
+  /// Derivatives of the rates of all joints with respect to efforts on them, at a state: the inverse of the mass
+  /// matrix, or what loops, mimics and motions leave of it. `step`: of samples of motions [s]. Empty if a loop is at a
+  /// dead point. Forgets what was known from the last step; allocates memory.
+  Eigen::MatrixXd mobility(const State& state, double step);
+  /// The index of a coordinate's rate; -1: it is held.
+  int rate_of(const Coordinate& coordinate) const;
+
  private:
   struct Joint {
     int first_position, first_rate;

@@ -123,11 +123,21 @@ std::string place_name(const Model& model, const StepResult::Place& place) {
   return fmt::format("element {} of {} of link '{}'", place.element + 1, element_count(*link.beam), link.name);
 }
 
-std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result) {
+std::string growth_text(const Model& model, const ExplicitLimit& limit) {
+  return fmt::format("{} of joint coordinate '{}' needs steps below {:.2g} s", limit.cause,
+                     model.coordinates[limit.coordinate].name, limit.step);
+}
+
+std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result,
+                         const ExplicitLimit& limit) {
   if (result.reason == Reason::None) return "";
   require_place(model, result);
   const Failure& failure = result.failure;
   std::string text = to_string(result.reason);
+  const bool is_too_long = limit.step < settings.step;
+  if (is_too_long)
+    text = fmt::format("the step is too long for an explicit scheme, so that the motion grows ({}): {}", text,
+                       growth_text(model, limit));
   if (failure.cause != result.reason && failure.cause != Reason::None)
     text += fmt::format(" ({})", to_string(failure.cause));
   const std::string place = place_and_amount(model, failure);
@@ -136,7 +146,8 @@ std::string failure_text(const Model& model, const StepSettings& settings, const
       ". Tried from t = {:.6g} s: steps down to {:.3g} s ({} halvings, step {:.3g} s), {} guesses, {} iterations",
       failure.time, failure.step, result.halvings, settings.step, failure.guesses, result.iterations);
   if (failure.tried_dissipation) text += ", then edmc2 (on_failure)";
-  return text + ". What usually helps: " + advice(model, result);
+  return text + ". What usually helps: " +
+         (is_too_long ? "such a step, or an implicit scheme, such as em" : advice(model, result));
 }
 
 }  // namespace flexarm

@@ -10,6 +10,7 @@
 #include "analysis/modes.h"
 #include "analysis/statics.h"
 #include "flexarm/simulation/command_refusal.h"
+#include "integrators/explicit_limit.h"
 #include "math/so3.h"
 #include "math/step_end.h"
 #include "model/carried_origin.h"
@@ -69,7 +70,11 @@ StepResult Simulation::step() {
 }
 
 std::string Simulation::explain(const StepResult& result) const {
-  return failure_text(implementation_->model, implementation_->settings, result);
+  const Implementation& own = *implementation_;
+  const bool is_explicit_step = own.scheme.tableau && !result.converged && result.failure.step > 0;
+  return failure_text(
+      own.model, own.settings, result,
+      is_explicit_step ? explicit_limit(own.model, own.scheme, *own.initial, own.settings.step) : ExplicitLimit());
 }
 
 void Simulation::reset() {
