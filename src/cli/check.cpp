@@ -301,6 +301,7 @@ void print_frequencies(Simulation& simulation) {
     fmt::print("\n");
   }
   print_growth(modes);
+  warn_of_long_step(simulation, oscillating);
 }
 
 }  // namespace
@@ -323,6 +324,7 @@ void add_check(CommandLine& line) {
     print_driven_ends(simulation);
     if (const std::string warning = warning_of_shaking_servos(simulation); !warning.empty())
       fmt::print(stderr, "flexarm: warning: {}\n", warning);
+    warn_of_growth(simulation);
     print_dead_point(simulation);
     try {
       print_frequencies(simulation);

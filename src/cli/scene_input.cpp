@@ -1,10 +1,16 @@
 #include "cli/scene_input.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "flexarm/scene/scene_description.h"
+#include "integrators/explicit_limit.h"
 #include "math/number_text.h"
+#include "simulation/failure_text.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {
@@ -171,6 +177,31 @@ void warn_of_instability(const Simulation& simulation, const StaticResult& resul
           : "would fall from it";
   for (const std::string& doubt : doubts_about_equilibrium(simulation, result, consequence))
     fmt::print(stderr, "flexarm: warning: {}\n", doubt);
+}
+
+void warn_of_growth(const Simulation& simulation) {
+  if (!scheme_of(simulation).tableau) return;
+  const ExplicitLimit limit =
+      explicit_limit(model_of(simulation), scheme_of(simulation), state_of(simulation), simulation.step_size());
+  if (limit.step < simulation.step_size())
+    fmt::print(stderr,
+               "flexarm: warning: the step, {} s, is too long for the explicit scheme {}, so that motions grow: {}\n",
+               simulation.step_size(), simulation.scheme(), growth_text(model_of(simulation), limit));
+}
+
+void warn_of_long_step(const Simulation& simulation, const std::vector<Mode>& modes) {
+  constexpr double kStepsInAPeriod = 10;  // the period that em computes is then 3 % too long
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const Mode& mode : modes)
+    if (mode.frequency > 0 && mode.rate <= 0) slowest = std::min(slowest, mode.frequency);
+  const double step = simulation.step_size();
+  if (!std::isfinite(slowest) || kStepsInAPeriod * step * slowest <= 1 || simulation.scene().integrator.accuracy)
+    return;
+  fmt::print(
+      stderr,
+      "flexarm: warning: the step, {} s, is long for the first mode, whose period is {:.3g} s: take ten steps in a "
+      "period, or more\n",
+      step, 1 / slowest);
 }
 
 bool are_modes_quick(const Simulation& simulation) {

@@ -48,6 +48,11 @@ void add_equilibrium(Command& command, Equilibrium& wanted);
 /// If the loads lead to an unstable equilibrium, says so on standard error, and which equilibrium was taken.
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted);
 
+/// If the step is so long for an explicit scheme that motions grow, says so on standard error.
+void warn_of_growth(const Simulation& simulation);
+/// If a step is more than a tenth of the period of the slowest of these modes, says so on standard error.
+void warn_of_long_step(const Simulation& simulation, const std::vector<Mode>& modes);
+
 /// Goes to the equilibrium, and computes the first `count` modes about it. If none can be found, for example since the
 /// mechanism can move freely, says so on standard error and computes the modes about the initial configuration; then
 /// there are as many more modes as there may be free motions.

@@ -42,6 +42,7 @@ void check_places(const SimulateArguments& arguments) {
     throw InputError("flexarm: --columns: a bag has messages, not columns");
   if (!arguments.columns.empty() && is_page(arguments.output))
     throw InputError("flexarm: --columns: a page has all columns");
+  warn_of_unknown_ending(arguments.output);
 }
 
 /// Refuses more steps than a double can count in time.
@@ -225,6 +226,7 @@ int simulate(SimulateArguments arguments) {
   Simulation simulation = started(scene, options);
   prepare_files(arguments, simulation);
   check_duration(arguments, simulation);
+  if (!wanted_accuracy(arguments, simulation)) warn_of_growth(simulation);
   const double begin = simulation.time();
   if (!arguments.vtk.empty() || is_page(arguments.output)) arguments.picture = picture_for(arguments, simulation);
   catch_interruptions();

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/installation.h"
@@ -93,6 +95,17 @@ bool is_bag(const std::string& path) {
 
 bool is_page(const std::string& path) {
   return ends_with(path, ".html");
+}
+
+void warn_of_unknown_ending(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  for (const char* known : {"", ".csv", ".txt", ".h5", ".bag", ".html"})
+    if (ending == known) return;
+  fmt::print(
+      stderr,
+      "flexarm: warning: --output: '{}' gets CSV, as its ending '{}' stands for nothing else: there are .csv, .h5 "
+      "(HDF5), .bag (ROS bag) and .html (page)\n",
+      path, ending);
 }
 
 std::unique_ptr<ResultWriter> open_output(const SimulateArguments& arguments, const Simulation& simulation,

@@ -58,6 +58,8 @@ std::FILE* report_stream(const SimulateArguments& arguments);
 bool has_output(const SimulateArguments& arguments);
 bool is_bag(const std::string& path);
 bool is_page(const std::string& path);
+/// Says on standard error that a file's ending is not that of a kind of output, so that it gets CSV.
+void warn_of_unknown_ending(const std::string& path);
 
 /// Opens a writer of all outputs that writes rows in a thread of its own. For each row it also updates the summary,
 /// which must outlive the writer. @returns null if there is no output
