@@ -121,8 +121,8 @@ Returns times, shape (intervals + 1,), and outputs, shape (intervals + 1, output
       .def("reduced", &reduced_model, R"(A model with `order` states, by balanced truncation of its decaying part.
 
 Poles that do not decay are kept if inputs move them and outputs show it. The error of every gain is at most twice the
-sum of the Hankel singular values that are left out. Returns the LinearModel and all Hankel singular values, the largest first. Raises ValueError if there
-is no model of that `order`.)",
+sum of the Hankel singular values that are left out. Returns the LinearModel and all Hankel singular values, the largest
+first. Raises ValueError if there is no model of that `order`.)",
            py::arg("order"));
   simulation.def("linearise", &linearise, R"(A LinearModel of small motions about the present configuration.
 
