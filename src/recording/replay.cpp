@@ -209,6 +209,7 @@ class Replay {
     node::TrajectoryFollower& follower = thread_.trajectories();
     if (options_.lock_step) commands.push_back({Commanded::Nothing});
     const double now = thread_.time();
+    follower.forget_before(now);
     if (message.points.empty()) {
       for (std::size_t joint = 0; joint < follower.joint_count(); ++joint)
         if (follower.follows(joint)) follower.stop(joint, now, options_.stop_duration);

@@ -53,12 +53,7 @@ void CommandInterface::adopt_scene() {
     subscribe(name, "command", Commanded::Effort);
     if (shown_.has_servo(i)) subscribe(name, "set_point", Commanded::SetPoint);
   }
-}
-
-void CommandInterface::let_go_from(std::size_t coordinate) {
-  for (std::size_t i = coordinate; i < shown_.coordinate_names().size(); ++i)
-    controllers_.release(i,
-                         "joint '" + shown_.coordinate_names()[i] + "' was removed, or has another place in the scene");
+  if (stopped_) stop(stepping_.simulation());  // what is new obeys, too
 }
 
 ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const std::string& suffix, Commanded quantity) {

@@ -46,9 +46,8 @@ class CommandInterface {
   /// To be called between two steps, after the simulation has got another scene, which may have other joints. Topics of
   /// joints that exist in both scenes stay.
   void adopt_scene();
-  /// To be called before links come or go. Coordinates with this index or a higher one disappear or get another index:
-  /// they stop following trajectories and goals.
-  void let_go_from(std::size_t coordinate);
+  /// To be called before links come or go.
+  void renumber(const Renumbering& places) { controllers_.renumber(places); }
   /// To be called between two steps, after a reset or after another state was loaded. Drops all commands, with their
   /// expiry times. The emergency stop stays as it is, on or off.
   void forget_commands();

@@ -44,9 +44,15 @@ void Controllers::take(std::size_t taker, const std::vector<std::size_t>& joints
 }
 
 void Controllers::release(std::size_t coordinate, const std::string& reason) {
-  if (!motions_.release(coordinate)) return;
+  motions_.release(coordinate);
   for (const auto& controller : controllers_)
     if (controller->has_goal_for(coordinate)) controller->abort(reason);
+}
+
+void Controllers::renumber(const Renumbering& places) {
+  for (std::size_t i = 0; i < places.coordinates.size(); ++i)
+    if (!places.coordinates[i]) release(i, "joint '" + motions_.shown().coordinate_names()[i] + "' was removed");
+  for (const auto& controller : controllers_) controller->renumber(places.coordinates);
 }
 
 void Controllers::release_all(const std::string& reason) {

@@ -32,6 +32,8 @@ class Controllers {
   void judge(double now);
   /// To be called if the coordinate gets a command from elsewhere: it stops following, and its goal is aborted.
   void release(std::size_t coordinate, const std::string& reason);
+  /// To be called before links come or go. Goals with joints that will be gone are aborted; the others go on.
+  void renumber(const Renumbering& places);
   /// To be called after the simulation has got another scene.
   void adopt_scene() { motions_.adopt_scene(); }
   /// Ends all trajectories, grips and goals.

@@ -85,6 +85,12 @@ void GripperController::end(GoalEnd how, const std::string& reason) {
   if (is_underway()) action_.end(how, result(), reason);
 }
 
+void GripperController::renumber(const Renumbering::Places& joints) {
+  JointController::renumber(joints);
+  targets_.resize(joints_.size());
+  for (std::size_t k = 0; k < joints_.size(); ++k) targets_[k].joint = joints_[k];
+}
+
 void GripperController::hold() {
   std::vector<Motions::Target> here;
   for (const std::size_t joint : joints_) here.push_back({joint, motions_.shown().position(joint)});

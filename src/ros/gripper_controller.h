@@ -19,6 +19,7 @@ class GripperController : public JointController {
   void judge(double now) override;
   void end(GoalEnd how, const std::string& reason) override;
   bool is_underway() const override { return action_.is_underway(); }
+  void renumber(const Renumbering::Places& joints) override;
 
  private:
   using Server = GoalServer<control::GripperCommandAction>;
@@ -36,7 +37,7 @@ class GripperController : public JointController {
   bool is_moving() const;
 
   ControllerDescription description_;
-  std::vector<Motions::Target> targets_;  ///< of the current goal
+  std::vector<Motions::Target> targets_;  ///< of the current goal, with the same joints as joints_
   double last_motion_ = 0;                ///< when a joint moved last, or when the goal began [s]
   bool begins_ = false;                   ///< true until the first judge() of the current goal
   double next_feedback_ = 0;              ///< simulated time of the next feedback [s]

@@ -28,6 +28,11 @@ class JointController {
   /// Ends the current goal, if there is one; the joints keep moving as they do.
   virtual void end(GoalEnd how, const std::string& reason) = 0;
   virtual bool is_underway() const = 0;
+  /// To be called before links come or go. No goal may use a joint that will be gone.
+  virtual void renumber(const Renumbering::Places& joints) {
+    if (!is_underway()) joints_.clear();
+    for (std::size_t& joint : joints_) joint = *joints[joint];
+  }
   /// Whether the current goal uses that joint.
   bool has_goal_for(std::size_t joint) const {
     return is_underway() && std::find(joints_.begin(), joints_.end(), joint) != joints_.end();

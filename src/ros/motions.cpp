@@ -26,6 +26,7 @@ template <class Change>
 void Motions::change(const Change& change) {
   stepping_.between_steps([&](Simulation& simulation) {
     change(simulation);
+    stepping_.trajectories().forget_before(reported_);  // reports of later steps may still be waiting
     adopt_scene();
   });
 }
@@ -109,13 +110,17 @@ void Motions::stop(const std::vector<std::size_t>& joints) {
   });
 }
 
-bool Motions::release(std::size_t joint) {
-  if (!followed_.follows(joint) && !grips_.holds(joint)) return false;
+void Motions::release_arrived(double now) {
+  reported_ = now;
+  followed_.release_arrived(now);
+}
+
+void Motions::release(std::size_t joint) {
+  if (!followed_.follows(joint) && !grips_.holds(joint)) return;
   change([&](Simulation&) {
     stepping_.trajectories().release(joint);
     stepping_.grips().release(joint);
   });
-  return true;
 }
 
 void Motions::release_all() {

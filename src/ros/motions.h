@@ -50,7 +50,8 @@ class Motions {
   /// Where the joint should be, if it follows a trajectory or has followed one; and when that trajectory ends.
   JointPoint at(std::size_t joint, double time) const { return followed_.at(joint, time); }
   double end(std::size_t joint) const { return followed_.end(joint); }
-  void release_arrived(double now) { followed_.release_arrived(now); }
+  /// To be called after each report. at() must not be called for earlier times any more.
+  void release_arrived(double now);
 
   /// Makes the joints that the message names follow it, from its stamp on. A message without points stops all joints of
   /// the group that follow trajectories.
@@ -66,8 +67,8 @@ class Motions {
   void stop(const std::vector<std::size_t>& joints);
   /// In lock step, makes one step. @returns false if too many steps wait already
   bool command_step() { return stepping_.command_step(); }
-  /// Ends the trajectory or grip of a joint. @returns false if it has none
-  bool release(std::size_t joint);
+  /// Ends the trajectory or grip of a joint, if it has one.
+  void release(std::size_t joint);
   void release_all();
   /// To be called after the simulation has got another scene.
   void adopt_scene();
@@ -84,6 +85,7 @@ class Motions {
   // Copies of the stepping thread's trajectories and grips, which can be read while steps go on:
   TrajectoryFollower followed_;
   Grips grips_;
+  double reported_ = 0;  ///< simulated time of the last report [s]
   LimitWatch limit_watch_;
 };
 

@@ -34,18 +34,6 @@ Pace pace(const Parameters& parameters) {
           parameters.error_window};
 }
 
-bool begins_with(const std::vector<std::string>& names, const std::vector<std::string>& first) {
-  return names.size() >= first.size() && std::equal(first.begin(), first.end(), names.begin());
-}
-
-/// Whether the coordinates and links of one simulation are the first ones of the other's, so that indices stay valid.
-bool keeps_places(const Simulation& before, const Simulation& after) {
-  const auto keeps = [](const std::vector<std::string>& old, const std::vector<std::string>& now) {
-    return begins_with(now, old) || begins_with(old, now);
-  };
-  return keeps(before.coordinate_names(), after.coordinate_names()) && keeps(before.link_names(), after.link_names());
-}
-
 /// Wall time from one step to the next [s]; 0: steps do not follow the wall clock.
 double period(double step, const Parameters& parameters) {
   return parameters.real_time_factor > 0 ? step / parameters.real_time_factor : 0;
@@ -335,9 +323,9 @@ void Node::edit(const std::function<void(Simulation&)>& edit) {
     take_reports();
     Simulation edited = running.copy();
     edit(edited);
-    const bool keeps = keeps_places(running, edited);
-    command_interface_.let_go_from(keeps ? edited.coordinate_names().size() : 0);
-    stepping_.go_on_with_scene(std::move(edited), keeps);
+    const Renumbering places(running, edited);
+    command_interface_.renumber(places);
+    stepping_.go_on_with_scene(std::move(edited), places);
     adopt_scene();
     show_new_state();
   });

@@ -63,8 +63,7 @@ class Node {
   /// @throws ParameterError, ModelError and others if the scene cannot be used; then nothing has changed
   void reload();
   /// Adds or removes links: goes on from the present state with the scene that `edit` makes of the present one
-  /// (payloads.h). Commands stay. Trajectories, grips and wrenches stay if all remaining joints and links keep their
-  /// indices, that is, if new ones come last, or the last ones go. Otherwise trajectories, grips and wrenches end.
+  /// (payloads.h). Commands, trajectories, goals, grips and wrenches of joints and links that stay go on.
   /// @throws what `edit` throws; then nothing has changed
   void edit(const std::function<void(Simulation&)>& edit);
   /// Goes on from the present state with other parameters and, if `scene` is given, with another scene. It may differ

@@ -6,6 +6,7 @@
 #include <flexarm/SpawnModel.h>
 #include <ros/console.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "flexarm/simulation/payloads.h"
 #include "messages/conversions.h"
 #include "node.h"
+#include "scene/resource_path.h"
 
 namespace flexarm::node {
 namespace {
@@ -29,14 +31,24 @@ Spawn place_of(const SpawnModel::Request& request) {
   return out;
 }
 
+/// The path of a model's file, which may be relative to the folder of the scene's file.
+/// @throws std::runtime_error if the scene has no file, or there is no such package
+std::string path_of(const std::string& file, const std::string& scene_file) {
+  const bool is_relative = file.find("://") == std::string::npos && std::filesystem::path(file).is_relative();
+  if (is_relative && !std::filesystem::is_regular_file(scene_file))
+    throw std::runtime_error("'" + file + "' is a path relative to the folder of the scene's file, but the scene is " +
+                             "the text of '" + scene_file + "': give an absolute path, or package://PACKAGE/PATH");
+  return scene::path_of_resource(file, scene_file);
+}
+
 /// @throws std::invalid_argument that lists all errors of the model
-scene::SceneDescription model_of(const SpawnModel::Request& request) {
+scene::SceneDescription model_of(const SpawnModel::Request& request, const std::string& scene_file) {
   if (request.model_xml.empty() == request.file.empty())
     throw std::invalid_argument("a model is given by model_xml or by file, not by both or none");
   scene::ReadOptions options;
   options.is_spawned = true;
   scene::ReadResult read = request.file.empty() ? scene::read_scene_text(request.model_xml, "model_xml", options)
-                                                : scene::read_scene_file(request.file, options);
+                                                : scene::read_scene_file(path_of(request.file, scene_file), options);
   if (!read.scene) throw std::invalid_argument("the model cannot be used:\n" + scene::to_text(read.diagnostics));
   for (const scene::Diagnostic& warning : read.diagnostics) ROS_WARN_STREAM(warning.text());
   return *std::move(read.scene);
@@ -71,7 +83,7 @@ std::vector<ros::ServiceServer> serve_payloads(ros::NodeHandle& private_node, No
           [](Simulation& simulation, const DetachLink::Request& request) { detach(simulation, request.link); }),
       serve<SpawnModel>(private_node, "spawn", simulator,
                         [](Simulation& simulation, const SpawnModel::Request& request) {
-                          spawn(simulation, model_of(request), place_of(request));
+                          spawn(simulation, model_of(request, simulation.scene().file), place_of(request));
                         }),
       serve<DeleteLink>(
           private_node, "delete", simulator,

@@ -71,6 +71,11 @@ void TrajectoryController::end(GoalEnd how, const std::string& reason) {
   end(how, how == GoalEnd::Aborted ? Result::INVALID_GOAL : Result::SUCCESSFUL, reason);
 }
 
+void TrajectoryController::renumber(const Renumbering::Places& joints) {
+  JointController::renumber(joints);
+  goal_.joints = joints_;
+}
+
 void TrajectoryController::end(GoalEnd how, int code, const std::string& text) {
   Result result;
   result.error_code = code;

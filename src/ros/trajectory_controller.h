@@ -19,6 +19,7 @@ class TrajectoryController : public JointController {
   void judge(double now) override;
   void end(GoalEnd how, const std::string& reason) override;
   bool is_underway() const override { return action_.is_underway(); }
+  void renumber(const Renumbering::Places& joints) override;
 
  private:
   using Server = GoalServer<control::FollowJointTrajectoryAction>;

@@ -45,9 +45,10 @@ void Grips::close(std::size_t joint, double position, double max_effort) {
   grips_.push_back({joint, position, max_effort});
 }
 
-void Grips::release_from(std::size_t joint) {
-  const auto went = [joint](const Grip& grip) { return grip.joint >= joint; };
-  grips_.erase(std::remove_if(grips_.begin(), grips_.end(), went), grips_.end());
+void Grips::renumber(const Renumbering::Places& joints) {
+  const auto is_gone = [&](const Grip& grip) { return !joints[grip.joint]; };
+  grips_.erase(std::remove_if(grips_.begin(), grips_.end(), is_gone), grips_.end());
+  for (Grip& grip : grips_) grip.joint = *joints[grip.joint];
 }
 
 void Grips::release(std::size_t joint) {

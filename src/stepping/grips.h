@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "renumbering.h"
 
 namespace flexarm::node {
 
@@ -19,8 +20,8 @@ class Grips {
   /// Stops commanding a joint.
   void release(std::size_t joint);
   void release_all() { grips_.clear(); }
-  /// Stops commanding all joints with this index or a higher one.
-  void release_from(std::size_t joint);
+  /// To be called when links have come or gone. Joints that are gone are no longer commanded.
+  void renumber(const Renumbering::Places& joints);
   bool holds(std::size_t joint) const;
   /// Gives the set points for the next step.
   void command(Simulation& simulation);

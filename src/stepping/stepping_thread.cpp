@@ -131,17 +131,27 @@ void SteppingThread::go_on_with(Simulation simulation) {
   make_room();
 }
 
-void SteppingThread::go_on_with_scene(Simulation simulation, bool keeps_places) {
-  const std::vector<std::string> names_before = simulation_.coordinate_names();
-  const std::size_t coordinates = simulation.coordinate_names().size();
-  if (!keeps_places)
-    while (!commands_.empty()) commands_.pop();  // in lock step, these are commands for later steps
+void SteppingThread::go_on_with_scene(Simulation simulation, const Renumbering& places) {
   go_on_with(std::move(simulation));
-  timed_commands_.renumber(names_before);
-  trajectories_.resize(keeps_places ? coordinates : 0);
-  trajectories_.resize(coordinates);
-  grips_.release_from(keeps_places ? coordinates : 0);
-  wrenches_.clear_from(keeps_places ? simulation_.link_names().size() : 0);
+  renumber_waiting_commands(places);
+  timed_commands_.renumber(places);
+  trajectories_.renumber(places.coordinates, simulation_.coordinate_names().size());
+  grips_.renumber(places.coordinates);
+  wrenches_.renumber(places);
+}
+
+void SteppingThread::renumber_waiting_commands(const Renumbering& places) {
+  for (std::size_t waiting = commands_.size(); waiting > 0; --waiting) {
+    Command command = commands_.front();
+    commands_.pop();
+    if (command.quantity != Commanded::Nothing) {
+      const std::optional<std::size_t> now = places.coordinates[command.coordinate];
+      command.coordinate = now.value_or(0);
+      if (!now) command.quantity = Commanded::Nothing;
+    }
+    commands_.free_entry() = command;
+    commands_.push();
+  }
 }
 
 void SteppingThread::begin_with(Simulation simulation) {

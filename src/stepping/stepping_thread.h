@@ -15,6 +15,7 @@
 #include "flexarm/simulation/spsc_ring.h"
 #include "grips.h"
 #include "pacer.h"
+#include "renumbering.h"
 #include "semaphore.h"
 #include "stepped_time.h"
 #include "timed_commands.h"
@@ -86,10 +87,11 @@ class SteppingThread {
   // ---- for a caller that has halted the thread and taken all reports
   /// Continues with another simulation of the same mechanism. Commands stay in force.
   void go_on_with(Simulation simulation);
-  /// Continues with the simulation of a scene in which links were added or removed. Commands stay in force, except
-  /// those for removed coordinates, and pulls. If coordinates or links change their indices, all trajectories, grips
-  /// and wrenches end, too.
-  void go_on_with_scene(Simulation simulation, bool keeps_places);
+  /// Continues with the simulation of a scene in which links have come or gone. Commands, those that wait included,
+  /// trajectories, grips and wrenches follow their coordinates and links by name. They end for coordinates and links
+  /// that are gone, wrenches also for links that are now fixed to the world. All pulls end.
+  /// @param places  those of the present simulation's coordinates and links in the other one
+  void go_on_with_scene(Simulation simulation, const Renumbering& places);
   /// Starts with the simulation of another scene. All commands are forgotten.
   void begin_with(Simulation simulation);
   void set_pace(const Pace& pace);
@@ -121,6 +123,8 @@ class SteppingThread {
   /// `lateness`: of a step that is paced by the wall clock [s].
   bool make_step(std::optional<double> lateness);
   void take_message();
+  /// Messages that wait still cause a step each in lock step, even if all that they command is gone.
+  void renumber_waiting_commands(const Renumbering& places);
   /// Allocates the memory of all reports in advance, with the size of a state after a step.
   void make_room();
   void begin_companion();

@@ -1,7 +1,6 @@
 #include "timed_commands.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace flexarm::node {
 
@@ -45,16 +44,15 @@ void TimedCommands::forget() {
   next_expiry_ = Command::kForEver;
 }
 
-void TimedCommands::renumber(const std::vector<std::string>& names_before) {
+void TimedCommands::renumber(const Renumbering& places) {
   const std::array<std::vector<double>, 2> before = expiry_;
   forget();
-  for (std::size_t i = 0; i < names_before.size(); ++i) {
-    const std::optional<std::size_t> now = simulation_.find_coordinate(names_before[i]);
-    for (std::size_t quantity = 0; now && quantity < before.size(); ++quantity) {
-      expiry_[quantity][*now] = before[quantity][i];
+  for (std::size_t quantity = 0; quantity < before.size(); ++quantity)
+    for (std::size_t i = 0; i < before[quantity].size(); ++i) {
+      if (!places.coordinates[i]) continue;
+      expiry_[quantity][*places.coordinates[i]] = before[quantity][i];
       next_expiry_ = std::min(next_expiry_, before[quantity][i]);
     }
-  }
 }
 
 void TimedCommands::forget_set_point(std::size_t coordinate) {

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "renumbering.h"
 
 namespace flexarm::node {
 
@@ -33,8 +33,8 @@ class TimedCommands {
   void expire(double time);
   /// From now on no command expires. The simulation may have become that of another scene.
   void forget();
-  /// To be called when the simulation has become that of another scene. Commands follow their coordinates by name.
-  void renumber(const std::vector<std::string>& names_before);
+  /// To be called when links of the simulation have come or gone.
+  void renumber(const Renumbering& places);
   /// From now on the set point of this coordinate does not expire.
   void forget_set_point(std::size_t coordinate);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <utility>
 
 namespace flexarm::node {
 namespace {
@@ -62,6 +64,12 @@ JointPoint JointSpline::cut(double end) {
   pieces_.erase(std::remove_if(pieces_.begin(), pieces_.end(), is_later), pieces_.end());
   if (pieces_.empty()) rest_ = there.position;
   return there;
+}
+
+void JointSpline::forget_before(double time) {
+  const auto present = std::find_if(pieces_.rbegin(), pieces_.rend(),
+                                    [&](const Piece& piece) { return piece.begin <= time + kTimeRoundOff; });
+  if (present != pieces_.rend()) pieces_.erase(pieces_.begin(), std::prev(present.base()));
 }
 
 void JointSpline::add(double begin, const JointPoint& from, double end, const JointPoint& to, Order order) {
@@ -144,6 +152,16 @@ void TrajectoryFollower::stop(std::size_t index, double now, double duration) {
 void TrajectoryFollower::release_arrived(double time) {
   for (Joint& joint : joints_)
     if (joint.follows && !joint.way.is_moving(time + kTimeRoundOff)) joint.follows = false;
+}
+
+void TrajectoryFollower::forget_before(double time) {
+  for (Joint& joint : joints_) joint.way.forget_before(time);
+}
+
+void TrajectoryFollower::renumber(const Renumbering::Places& joints, std::size_t count) {
+  std::vector<Joint> before = std::exchange(joints_, std::vector<Joint>(count));
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (joints[i]) joints_[*joints[i]] = std::move(before[i]);
 }
 
 }  // namespace flexarm::node

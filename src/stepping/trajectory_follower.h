@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "renumbering.h"
+
 namespace flexarm::node {
 
 /// Times, which are sums, count as equal if they differ by less than this [s].
@@ -34,6 +36,9 @@ class JointSpline {
 
   /// Removes everything after `end` [s]. Returns the joint's motion at `end`.
   JointPoint cut(double end);
+  /// Removes what is over at `time` [s]. at() must not be called for earlier times any more.
+  void forget_before(double time);
+  std::size_t piece_count() const { return pieces_.size(); }
   /// Which values a polynomial matches at both ends: positions (degree 1), velocities as well (3), accelerations as
   /// well (5).
   enum class Order { Position, Velocity, Acceleration };
@@ -76,6 +81,8 @@ class TrajectoryFollower {
   void release(std::size_t joint) { joints_[joint].follows = false; }
   /// Stops following for joints that have arrived.
   void release_arrived(double time);
+  /// Frees the memory of what is over at `time` [s]. at() must not be called for earlier times any more.
+  void forget_before(double time);
 
   bool follows(std::size_t joint) const { return joints_[joint].follows; }
   /// Set point of a joint that follows a trajectory.
@@ -83,8 +90,10 @@ class TrajectoryFollower {
   /// Time at which the joint arrives [s].
   double end(std::size_t joint) const { return joints_[joint].way.end(); }
   std::size_t joint_count() const { return joints_.size(); }
-  /// Adapts to a new number of joints: joints are added or removed at the end.
-  void resize(std::size_t joints) { joints_.resize(joints); }
+  /// Number of polynomials of a joint's path that are kept.
+  std::size_t piece_count(std::size_t joint) const { return joints_[joint].way.piece_count(); }
+  /// To be called when links have come or gone, so that there are `count` joints. Those that stay go on.
+  void renumber(const Renumbering::Places& joints, std::size_t count);
 
  private:
   struct Joint {

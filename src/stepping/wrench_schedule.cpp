@@ -1,6 +1,8 @@
 #include "wrench_schedule.h"
 
 #include <algorithm>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace flexarm::node {
@@ -33,9 +35,13 @@ void WrenchSchedule::update(double time) {
   if (changed) apply();
 }
 
-void WrenchSchedule::clear_from(std::size_t link) {
-  const auto went = [link](const Entry& entry) { return entry.wrench.link >= link; };
-  entries_.erase(std::remove_if(entries_.begin(), entries_.end(), went), entries_.end());
+void WrenchSchedule::renumber(const Renumbering& places) {
+  for (Entry& entry : std::exchange(entries_, {})) {
+    const std::optional<std::size_t> link = places.links[entry.wrench.link];
+    if (!link) continue;
+    entry.wrench.link = *link;
+    if (accepts(entry.wrench)) entries_.push_back(entry);
+  }
   pulls_.clear();
   apply();
 }
@@ -44,6 +50,15 @@ void WrenchSchedule::clear() {
   entries_.clear();
   pulls_.clear();
   apply();
+}
+
+bool WrenchSchedule::accepts(const AppliedWrench& wrench) {
+  try {
+    simulation_.apply_wrenches({wrench});
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
 }
 
 void WrenchSchedule::apply() {

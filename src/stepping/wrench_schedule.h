@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "renumbering.h"
 
 namespace flexarm::node {
 
@@ -20,8 +21,9 @@ class WrenchSchedule {
   void set_pulls(const std::vector<AppliedWrench>& pulls);
   /// To be called before each step, which begins at `time`.
   void update(double time);
-  /// Removes all wrenches on links with this index or a higher one, and all pulls.
-  void clear_from(std::size_t link);
+  /// To be called when links of the simulation have come or gone. All pulls end, and so do wrenches on links that are
+  /// gone or are now fixed to the world.
+  void renumber(const Renumbering& places);
   /// Removes all wrenches and pulls, including those that have not begun yet.
   void clear();
 
@@ -32,6 +34,8 @@ class WrenchSchedule {
     bool acts;
   };
 
+  /// Whether the simulation can apply it. Afterwards apply() must be called.
+  bool accepts(const AppliedWrench& wrench);
   void apply();
 
   Simulation& simulation_;

@@ -2,15 +2,17 @@
 """Tests that links are attached and detached, and that models come and go, while the node runs."""
 
 import math
+import os
 import tempfile
 import unittest
 
 import rospy
 import rostest
+from flexarm.msg import JointForceCommand
 from flexarm.srv import AttachLink, DeleteLink, DetachLink, SpawnModel
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from running_node import RunningNode
-from simulated_arm import CommandTopic, SimulatedArm, wait_until
+from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
 from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 
@@ -20,6 +22,8 @@ DISC = """<link name="disc">""" + INERTIAL.format(1, 0.1) + """</link>
 <joint name="turn" type="continuous"> <parent link="base"/> <child link="disc"/> <axis xyz="0 0 1"/> </joint>"""
 BOX = """<link name="box">""" + INERTIAL.format(0.5, 0.01) + """</link>
 <joint name="of_box" type="floating"> <parent link="base"/> <child link="box"/> <origin xyz="1 0 0"/> </joint>"""
+HOOK = """<link name="hook">""" + INERTIAL.format(1, 0.1) + """</link>
+<joint name="screw" type="fixed"> <parent link="base"/> <child link="hook"/> </joint>"""
 BALL = """<robot name="ball"> <link name="ball">""" + INERTIAL.format(2, 0.02) + """</link> </robot>"""
 
 ALONE, TOGETHER = 0.1, 0.1 + 0.01 + 0.5  # inertia about the axis, of the disc alone and with the box [kg m^2]
@@ -109,6 +113,62 @@ class Payloads(unittest.TestCase):
         wait_until(lambda: "no body has a principal moment" in self.output(), "the warning")
         self.assertIn("ball/z", self.arm.joint_states().name)
         self.assertNotIn("clamped", self.output())
+
+    def test_a_wrench_on_a_link_that_becomes_fixed_ends(self):
+        self.start(scene(DISC, BOX))
+        self.expect(self.arm.apply_wrench("disc", moment=(0, 0, 0.2)))
+        self.expect(self.arm.apply_wrench("box", force=(1, 0, 0)))
+        self.expect(self.attach("box", "base"))
+        before = self.arm.status().time, self.arm.joint("turn").velocity
+        wait_until(lambda: self.arm.status().time > before[0] + 0.1, "time to go on")
+        self.assertGreater(self.arm.joint("turn").velocity, before[1])
+        self.assertIn("fixed to the world", self.arm.apply_wrench("box", force=(1, 0, 0)).message)
+
+    def test_a_file_is_relative_to_the_folder_of_the_scene(self):
+        self.start(scene(DISC), "_paused:=true")
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf", dir=os.path.dirname(self.scene.name)) as ball:
+            ball.write(BALL)
+            ball.flush()
+            self.expect(self.spawn(file=os.path.basename(ball.name)))
+            self.expect(self.spawn(file=ball.name, prefix="second_"))
+        self.assertIn("second_ball/x", self.arm.joint_states().name)
+        answer = self.refusal(self.spawn(file="nothing.urdf"))
+        self.assertIn(os.path.join(os.path.dirname(self.scene.name), "nothing.urdf: cannot be read"), answer)
+        self.assertIn("package 'nobody'", self.refusal(self.spawn(file="package://nobody/ball.urdf")))
+
+    def test_a_scene_that_is_a_text_has_no_folder(self):
+        rospy.set_param("/robot_description", scene(DISC))
+        self.addCleanup(rospy.delete_param, "/robot_description")
+        self.start(scene(DISC), "_scene:=", "_paused:=true")
+        self.assertIn("'ball.urdf' is a path relative to the folder of the scene's file, but the scene is the text of "
+                      "'/robot_description'", self.refusal(self.spawn(file="ball.urdf")))
+
+    def test_static_frames_that_move_are_static_no_more(self):
+        self.start(scene(DISC, HOOK), "_paused:=true")
+
+        def static_frames():
+            message = rospy.wait_for_message("/tf_static", TFMessage, PATIENCE)
+            return [transform.child_frame_id for transform in message.transforms]
+
+        self.assertEqual(static_frames(), ["hook"])
+        self.expect(self.detach("hook"))
+        self.assertEqual(static_frames(), [])
+        frames = rospy.wait_for_message("/tf", TFMessage, PATIENCE).transforms
+        self.assertIn("hook", [transform.child_frame_id for transform in frames])
+
+    def test_in_lock_step_each_message_makes_its_step_whoever_goes(self):
+        self.start(scene(DISC, BOX), "_lock_step:=true", "_paused:=true")
+        force = CommandTopic("/joint_force_command", JointForceCommand)
+        for effort in (0.1, 0.2):
+            force.send(force_command(["of_box/x", "turn"], [1.0, effort]))
+        force.send(force_command(["of_box/x"], [2.0]))
+        force.send(force_command(["nobody"], [0.0]))  # the topic's messages come in order
+        wait_until(lambda: "no joint coordinate 'nobody'" in self.output(), "the refusal of the last message")
+        before = self.arm.status().steps
+        self.expect(self.delete("box"))
+        self.arm.resume()
+        wait_until(lambda: self.arm.status().steps == before + 3, "the three steps")
+        self.assertEqual(self.arm.joint("turn").effort, 0.2)
 
     def test_frames_follow_while_it_runs(self):
         self.start(scene(DISC, BOX))

@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty, Trigger
 
-PATIENCE = 60.0  # s, wall time
+PATIENCE = 60.0  # s, wall time; long enough for a node to start on a busy machine
 
 
 def wait_until(condition, what, patience=PATIENCE):
@@ -78,6 +78,33 @@ class CommandTopic:
 
 def force_command(names, efforts, seconds=0.0):
     return JointForceCommand(names=names, efforts=efforts, duration=rospy.Duration.from_sec(seconds))
+
+
+def wait_for_log(act, word):
+    """Call `act` again and again, until a node logs a text that contains `word`."""
+    heard = []
+    subscriber = rospy.Subscriber("/rosout_agg", Log, lambda log: word in log.msg and heard.append(log.msg))
+    wait_until(lambda: subscriber.get_num_connections() > 0, "the log")
+    for _ in range(int(PATIENCE)):
+        act()
+        end = time.monotonic() + 1.1  # refusals are logged once a second
+        while not heard and time.monotonic() < end:
+            time.sleep(0.01)
+        if heard:
+            break
+    subscriber.unregister()
+    assert heard, "waited in vain for the log of: " + word
+
+
+def wait_for_arrival(force):
+    """Wait until the node has received all that was sent on a topic of efforts. Messages of one topic come in order, so
+    the refusal of another message says so."""
+    wait_for_log(lambda: force.send(force_command(["nobody"], [0.0])), "no joint coordinate 'nobody'")
+
+
+def release_stop(stop):
+    """Release the emergency stop, and wait until commands are accepted again."""
+    wait_for_log(lambda: stop.send(False), "emergency stop released")
 
 
 def warnings_during(act, word):

@@ -1,6 +1,10 @@
-// Tests that the thread that steps allocates nothing, with commands and wrenches that begin and end.
+// Tests that the thread that steps allocates nothing, with commands and wrenches that begin and end, and that streamed
+// points need no more and more memory.
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +47,33 @@ TEST(SteppingThread, AllocatesNothingWhereWrenchesAndCommandsBeginAndEnd) {
             0);
   EXPECT_EQ(steps, 200);
   EXPECT_GT(thread.simulation().position(0), 0) << "what was asked for acts";
+}
+
+// A client streams points: each message replaces the one before, half of a period before that would be over. Two
+// polynomials are kept at most: the one that is followed, and the one that replaces it.
+TEST(TrajectoryFollower, StreamedPointsNeedNoMoreMemoryFromMessageToMessage) {
+  if (!test::kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be counted";
+  constexpr double kPeriod = 0.02;  // [s]
+  TrajectoryFollower follower(1);
+  JointTrajectory trajectory{{0}, 10.0, {{1.5 * kPeriod, {0.3}, {0.0}, {}}}};
+  const std::vector<double> set_points = {0.3};
+  double largest_error = 0;
+  std::size_t most_pieces = 0;
+  const auto stream = [&](int messages) {
+    for (int n = 0; n < messages; ++n) {
+      const double now = trajectory.start += kPeriod;
+      const JointPoint before = follower.follows(0) ? follower.at(0, now) : JointPoint{0.3};
+      trajectory.points[0].positions[0] = 0.3 + 0.1 * std::sin(now);
+      follower.follow(trajectory, now, set_points);
+      follower.forget_before(now);
+      largest_error = std::max(largest_error, std::abs(follower.at(0, now).position - before.position));
+      most_pieces = std::max(most_pieces, follower.piece_count(0));
+    }
+  };
+  stream(10);
+  EXPECT_EQ(test::allocations_in([&] { stream(10000); }), 0);
+  EXPECT_LE(most_pieces, 2);
+  EXPECT_LE(largest_error, 1e-12);
 }
 
 TEST(SteppingThread, ThrowsWhatKeepsItFromBeginning) {

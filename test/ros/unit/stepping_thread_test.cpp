@@ -1,11 +1,15 @@
 // Tests the thread that makes the steps of the node: pace, commands, halts and failures.
 #include "stepping/stepping_thread.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "flexarm/simulation/payloads.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::node {
@@ -275,6 +279,124 @@ TEST(SteppingThread, GoesOnWhereAStepIsCutForLackOfTime) {
   thread.halt();
   EXPECT_GT(cut, 0);
   EXPECT_NE(reports.positions.back(), reports.positions.front());
+}
+
+// ---------------------------------------------------------------- links come and go
+
+/// Rotors of 0.1 kg m^2 on hinges with these names and servos in mode effort, without gravity. Each link is called
+/// "of_" and the name of its hinge.
+Simulation rotors(const std::vector<std::string>& hinges, ServoMode mode = ServoMode::Effort) {
+  test::SceneBuilder b;
+  b.scene.gravity.setZero();
+  for (const std::string& hinge : hinges) {
+    b.body("of_" + hinge, 1, {0, 0, 0}, 0.1 * Matrix3::Identity());
+    b.joint(hinge, scene::JointKind::Continuous, "world", "of_" + hinge, {0, 0, 0}, {0, 0, 1});
+    scene::ServoDescription servo;
+    servo.coordinate = hinge;
+    servo.mode = mode;
+    servo.kp = mode == ServoMode::Position ? 100 : 0;
+    b.scene.servos.push_back(servo);
+  }
+  b.scene.integrator.step = 0.001;
+  return Simulation(b.scene);
+}
+
+/// Removes the link of a hinge while the thread is halted, as the node does.
+void take_away(SteppingThread& thread, const std::string& hinge) {
+  Simulation edited = thread.simulation().copy();
+  remove(edited, "of_" + hinge);
+  const Renumbering places(thread.simulation(), edited);
+  thread.go_on_with_scene(std::move(edited), places);
+}
+
+double effort_of(SteppingThread& thread, const std::string& hinge) {
+  return thread.simulation().effort(*thread.simulation().find_coordinate(hinge));
+}
+
+// In lock step, commands wait for their steps. Each message still causes its step if what it commands is gone.
+TEST(SteppingThread, WaitingCommandsOfCoordinatesThatAreGoneAreDropped) {
+  for (const bool last_goes : {true, false}) {
+    Pace pace;
+    pace.lock_step = true;
+    SteppingThread thread(rotors({"a", "b", "c"}), pace, [] {});
+    const std::string gone = last_goes ? "c" : "a";
+    const std::size_t went = last_goes ? 2 : 0;
+    ASSERT_TRUE(thread.command({{Commanded::SetPoint, went, 5}}));
+    ASSERT_TRUE(
+        thread.command({{Commanded::SetPoint, went, 6}, {Commanded::SetPoint, 1, 2}, {Commanded::Effort, went, 7}}));
+    ASSERT_TRUE(thread.command({{Commanded::SetPoint, 1, 3}}));
+    take_away(thread, gone);
+    thread.run(true);
+    std::uint64_t steps = 0;
+    for (int n = 0; n < 3; ++n) {
+      for (int waited = 0; thread.reports().empty() && waited < 10000; ++waited)
+        std::this_thread::sleep_for(milliseconds(1));
+      ASSERT_FALSE(thread.reports().empty()) << gone;
+      steps = thread.reports().front().steps;
+      thread.reports().pop();
+    }
+    thread.halt();
+    EXPECT_EQ(steps, 3);
+    EXPECT_EQ(effort_of(thread, "b"), 3) << gone;
+    EXPECT_EQ(effort_of(thread, last_goes ? "a" : "c"), 0) << gone;
+  }
+}
+
+TEST(SteppingThread, CommandsTrajectoriesAndGripsFollowTheirCoordinates) {
+  scene::SceneDescription scene = rotors({"a", "b", "c", "d"}, ServoMode::Position).scene();
+  scene.servos.pop_back();
+  SteppingThread thread(Simulation(scene), {}, [] {});
+  const double end = 0.1;
+  thread.trajectories().follow({{0, 1}, 0, {{end, {1, 2}, {}, {}}}}, 0, {0, 0});
+  thread.grips().close(2, 0.5, 0);
+  ASSERT_TRUE(thread.command({{Commanded::Effort, 3, 4, 0.01}}));
+  ASSERT_TRUE(thread.advance());
+  take_away(thread, "a");
+  EXPECT_EQ(effort_of(thread, "d"), 4);
+  for (int n = 2; n <= 50; ++n) {
+    ASSERT_TRUE(thread.advance());
+    EXPECT_NEAR(thread.simulation().set_point(0), 2 * n * 0.001 / end, 1e-12);
+  }
+  EXPECT_EQ(thread.simulation().set_point(1), 0.5);
+  take_away(thread, "b");
+  take_away(thread, "c");
+  ASSERT_TRUE(thread.advance());
+  EXPECT_EQ(effort_of(thread, "d"), 0) << "its time is over";
+}
+
+// The wrench of a link that is now fixed to the world ends. The others go on.
+TEST(SteppingThread, WrenchesFollowTheirLinksUntilTheseAreGoneOrFixed) {
+  test::SceneBuilder b;
+  b.scene.gravity.setZero();
+  for (const char* name : {"first", "held", "last"}) {
+    b.body(name, 2, {0, 0, 0}, 0.1 * Matrix3::Identity());
+    b.joint(std::string("of_") + name, scene::JointKind::Floating, "world", name, {0, 0, 0}, {0, 0, 1});
+  }
+  b.scene.integrator.step = 0.001;
+  SteppingThread thread(Simulation(b.scene), {}, [] {});
+  for (const char* name : {"first", "held", "last"}) {
+    const std::vector<std::string>& links = thread.simulation().link_names();
+    const auto link = static_cast<std::size_t>(std::find(links.begin(), links.end(), name) - links.begin());
+    thread.wrenches().add({link, {0, 0, 0}, {{6, 0, 0}, {0, 0, 0}}, false}, 0, Command::kForEver);
+  }
+  const auto go_on_with = [&](const auto& edit) {
+    Simulation edited = thread.simulation().copy();
+    edit(edited);
+    const Renumbering places(thread.simulation(), edited);
+    thread.go_on_with_scene(std::move(edited), places);
+  };
+  go_on_with([](Simulation& simulation) { attach(simulation, "held", "world"); });
+  go_on_with([](Simulation& simulation) { remove(simulation, "first"); });
+  thread.wrenches().add({thread.simulation().link_names().size() - 1, {0, 0, 0}, {{0, 6, 0}, {0, 0, 0}}, false}, 0,
+                        Command::kForEver);
+  for (int n = 0; n < 100; ++n) ASSERT_TRUE(thread.advance());
+  const Simulation& simulation = thread.simulation();
+  // Three coordinates of translation and three of rotation; 6 N on 2 kg from rest for 0.1 s.
+  EXPECT_NEAR(simulation.velocity(*simulation.find_coordinate("of_last/x")), 0.3, 1e-9);
+  EXPECT_NEAR(simulation.velocity(*simulation.find_coordinate("of_last/y")), 0.3, 1e-9);
+  go_on_with([](Simulation& simulation) { detach(simulation, "held"); });
+  ASSERT_TRUE(thread.advance());
+  EXPECT_NEAR(simulation.velocity(*simulation.find_coordinate("of_held/x")), 0, 1e-9) << "it does not come back";
 }
 
 TEST(SteppingThread, MayBeHaltedWhereAStepFails) {

@@ -1,4 +1,5 @@
 // Tests paths of joints through points: interpolation, replacement by another path, stops.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -138,6 +139,19 @@ TEST(TrajectoryFollower, LeavesWhatHasArrived) {
   follower.follow(trajectory_of(1), kStart, {0.3});
   follower.release(0);
   EXPECT_FALSE(follower.follows(0));
+}
+
+TEST(TrajectoryFollower, ForgetsOnlyWhatIsOver) {
+  TrajectoryFollower follower(1);
+  follower.follow(trajectory_of(5), kStart, {0.3});
+  const TrajectoryFollower whole = follower;
+  for (const double now : {-1.0, 0.0, 0.5, 0.6, 1.9999, 2.0, 3.5, 9.0}) {
+    follower.forget_before(kStart + now);
+    for (double time = std::max(now, 0.0); time < 10; time += 0.05)
+      expect_near(follower.at(0, kStart + time), whole.at(0, kStart + time), time);
+    EXPECT_EQ(follower.end(0), whole.end(0));
+  }
+  EXPECT_EQ(follower.piece_count(0), 1);
 }
 
 TEST(TrajectoryFollower, SaysWhatIsWrongWithATrajectory) {
