@@ -3,10 +3,10 @@
 
 show_in_rviz.py [RVIZ-ARGUMENT...]
 
-Fixed frame, camera and grid follow the simulator's parameters flexarm/view/...; the displays are those of
-config/flexarm.rviz. Of the URDF, rviz draws only the rigid links, since the <visual> of a flexible link would stay
-straight beside the bent beam. For this, the parameter rigid_links_description gets a URDF without those. If no link has
-a shape, the frames are shown.
+Fixed frame, camera and grid follow the simulator's parameters flexarm/view/...; grounds have grids of their own. The
+displays are those of config/flexarm.rviz. Of the URDF, rviz draws only the rigid links, since the <visual> of a
+flexible link would stay straight beside the bent beam. For this, the parameter rigid_links_description gets a URDF
+without those. If no link has a shape or a mass, the frames are shown.
 """
 
 import signal
@@ -32,6 +32,8 @@ PATIENCE = 30.0  # s, wall time
 # In radii of the scene:
 DISTANCE = 3.6  # of the camera from the centre; its angle of view is 45 degrees
 LEGEND = 0.25  # how far the camera looks past the centre, towards the legend
+GRID = 1.2  # half of its length
+CELLS = 10  # of the grid in the scene's diameter, about
 
 
 def wait_for_view():
@@ -55,9 +57,24 @@ def rigid_links(description):
 
 
 def has_shape(description):
-    """Whether rviz can draw more of the robot than its frames."""
+    """Whether rviz can draw more of the robot than its frames: shapes, beams, or markers of masses."""
     robot = xml.etree.ElementTree.fromstring(description)
-    return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam"))
+    return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam", "collision", "inertial"))
+
+
+def has_ground(description):
+    """Whether the markers have a ground with its own grid."""
+    return xml.etree.ElementTree.fromstring(description).find("ground") is not None
+
+
+def fit_grid(grid, view):
+    """The grid is a square at the scene, whose lines go through the origin."""
+    cell = 10.0 ** math.floor(math.log10(2 * view["radius"] / CELLS))
+    cell *= next(factor for factor in (1, 2, 5, 10) if factor * cell * CELLS >= 1.5 * view["radius"])
+    count = 2 * math.ceil(GRID * view["radius"] / cell)
+    grid.update({"Cell Size": cell, "Plane Cell Count": count})
+    x, y, _ = view["center"]
+    grid["Offset"] = {"X": cell * round(x / cell), "Y": cell * round(y / cell), "Z": 0}
 
 
 def fit(config, view, prefix, description, interactive=False):
@@ -71,7 +88,8 @@ def fit(config, view, prefix, description, interactive=False):
     camera["Focal Point"] = {"X": x - LEGEND * radius, "Y": y, "Z": z}
     camera["Near Clip Distance"] = 1e-3 * radius
     displays = {display["Class"]: display for display in manager["Displays"]}
-    displays["rviz/Grid"]["Cell Size"] = 10.0 ** round(math.log10(radius / 3))
+    fit_grid(displays["rviz/Grid"], view)
+    displays["rviz/Grid"]["Enabled"] = displays["rviz/Grid"]["Value"] = not has_ground(description)
     displays["rviz/TF"]["Marker Scale"] = radius
     displays["rviz/TF"]["Enabled"] = not has_shape(description)
     displays["rviz/RobotModel"]["TF Prefix"] = prefix.rstrip("/")

@@ -31,6 +31,7 @@ struct ShowArguments {
   Words words = option_words(arguments.run.scene);
   words.insert(words.end(), {"--output", page_path(arguments.page, arguments.run.scene, ""), "--rate",
                              text_of(arguments.run.page_rate)});
+  if (arguments.run.page_time) words.push_back("--at=" + text_of(*arguments.run.page_time));
   if (arguments.page.opens) words.push_back("--open");
   if (!scene.empty()) words.push_back("--scene=" + scene);
   words.push_back("--");
@@ -120,6 +121,8 @@ void add_show(CommandLine& line) {
   command.option("--rate", run.page_rate, "instants in the page per second of simulated time")
       .shows_default()
       .check(check_positive);
+  command.option("--at", run.page_time, "time that the page shows first [s]; by default that of the largest strain")
+      .shown_as("T");
   command.flag("--open", arguments->page.opens, "opens the page in a browser");
   command.flag("--quiet", run.quiet, "no progress bar and no summary");
   command

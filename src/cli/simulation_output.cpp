@@ -36,7 +36,8 @@ std::unique_ptr<ResultWriter> make_writer(const SimulateArguments& arguments, co
   if (is_bag(path)) return recording_library().bag(path, simulation, origin_of(arguments.scene));
   if (is_page(path))
     return std::make_unique<pictures::PageWriter>(
-        path, simulation, pictures::RecordingOptions{simulation.scene().name, arguments.page_rate});
+        path, simulation, pictures::RecordingOptions{simulation.scene().name, arguments.page_rate},
+        arguments.page_time);
   using Solver = ResultColumns::Solver;
   ResultColumns columns(simulation, arguments.estimates_error ? Solver::WithEstimate : Solver::With, arguments.columns);
   if (ends_with(path, ".h5"))

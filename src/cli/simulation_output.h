@@ -34,6 +34,7 @@ struct SimulateArguments {
   bool quiet = false;
   SimulationOptions options;
   double page_rate = 60;                 ///< instants in a page per second of simulated time
+  std::optional<double> page_time;       ///< that the page shows first [s]; empty: that of the largest strain
   double vtk_rate = pictures::kVtkRate;  ///< the same for ParaView
 };
 

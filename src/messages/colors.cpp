@@ -1,7 +1,6 @@
 #include "messages/colors.h"
 
-#include <algorithm>
-#include <cmath>
+#include "pictures/color_scale.h"
 
 namespace flexarm::messages {
 
@@ -15,8 +14,8 @@ std_msgs::ColorRGBA make_color(double red, double green, double blue, double alp
 }
 
 std_msgs::ColorRGBA strain_color(double part) {
-  const auto clamped = [](double value) { return std::clamp(value, 0.0, 1.0); };
-  return make_color(clamped(4 * part - 2), clamped(2 - std::abs(4 * part - 2)), clamped(2 - 4 * part));
+  const auto [red, green, blue] = pictures::color_of_amount(part);
+  return make_color(red, green, blue);
 }
 
 std_msgs::ColorRGBA lit(std_msgs::ColorRGBA color, const Vector3& normal) {

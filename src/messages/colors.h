@@ -9,8 +9,7 @@ namespace flexarm::messages {
 
 std_msgs::ColorRGBA make_color(double red, double green, double blue, double alpha = 1);
 
-/// The colour of a strain, given as a fraction (0 to 1) of the largest strain: from blue over cyan, green and yellow to
-/// red, with linear interpolation.
+/// The colour of a strain, given as a fraction (0 to 1) of the largest strain, as in pages (pictures/color_scale.h).
 std_msgs::ColorRGBA strain_color(double part);
 
 /// Shades a colour as if lit from above, since rviz does not light triangles that have their own colours.

@@ -9,17 +9,18 @@
 #include "messages/markers.h"
 #include "messages/picture_axes.h"
 #include "messages/triangle_mesh.h"
+#include "pictures/color_scale.h"
 
 namespace flexarm::messages {
 namespace {
 
 // Lengths per radius of the scene.
-constexpr double kDistance = 1.42;  ///< from the scene's centre
-constexpr double kBarCentre = 0.72, kHalfHeight = 0.33;
-constexpr double kBarRadius = 0.025;
-constexpr double kLegendTextHeight = 0.08;
-constexpr double kTextDistance = 0.2;  ///< from the bar
-constexpr double kLine = 0.13;         ///< from one line of text to the next
+constexpr double kDistance = 1.4;  ///< from the scene's centre
+constexpr double kBarCentre = 0.75, kHalfHeight = 0.18;
+constexpr double kBarRadius = 0.018;
+constexpr double kLegendTextHeight = 0.06;
+constexpr double kTextDistance = 0.15;  ///< from the bar
+constexpr double kLine = 0.1;           ///< from one line of text to the next
 
 constexpr const char* kName = "legend";
 
@@ -31,9 +32,11 @@ class Legend {
   void add_bar(double largest) {
     const auto height = [](double part) { return kBarCentre + (2 * part - 1) * kHalfHeight; };
     const Quaternion upright = Quaternion::FromTwoVectors(Vector3::UnitX(), axes_.up);
-    constexpr int kParts = 4;
+    constexpr std::size_t kParts = pictures::kColorsOfAmounts.size() - 1;  // between them, colours are linear
     std::vector<Pose> sections;
-    for (int k = 0; k <= kParts; ++k) sections.push_back({place(0, height(k / double(kParts))), upright});
+    sections.reserve(kParts + 1);
+    for (std::size_t k = 0; k <= kParts; ++k)
+      sections.push_back({place(0, height(static_cast<double>(k) / static_cast<double>(kParts))), upright});
     const TriangleMesh mesh = tube_mesh(sections, std::vector<double>(sections.size(), kBarRadius * extent_.radius));
     visualization_msgs::Marker bar = next(visualization_msgs::Marker::TRIANGLE_LIST);
     draw(mesh, bar);

@@ -20,7 +20,8 @@ struct ArrowKind {
 };
 
 struct LegendContent {
-  std::optional<double> largest_strain;  ///< strain that is drawn red [-]; empty: nothing is coloured by strain
+  std::optional<double>
+      largest_strain;  ///< strain at the bright end of the colours [-]; empty: nothing is coloured by strain
   ArrowScale arrows;
   std::vector<ArrowKind> kinds;  ///< kinds that may occur in the scene
 };

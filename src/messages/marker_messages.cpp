@@ -11,6 +11,7 @@
 #include "flexarm/scene/scene_description.h"
 #include "messages/colors.h"
 #include "messages/conversions.h"
+#include "messages/ground_markers.h"
 #include "messages/legend.h"
 #include "messages/markers.h"
 #include "messages/picture_axes.h"
@@ -100,14 +101,15 @@ double balance(const Energies& energies) {
 }  // namespace
 
 bool* MarkerChoice::find(const std::string& name) {
-  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &contacts, &lines, &text, &legend};
+  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &contacts,
+                           &lines, &masses, &grounds, &text,     &legend};
   const auto found = std::find(names().begin(), names().end(), name);
   return found == names().end() ? nullptr : members[found - names().begin()];
 }
 
 const std::vector<std::string>& MarkerChoice::names() {
-  static const std::vector<std::string> names{"beams",    "trails", "efforts", "wrenches", "reactions",
-                                              "contacts", "lines",  "text",    "legend"};
+  static const std::vector<std::string> names{"beams", "trails", "efforts", "wrenches", "reactions", "contacts",
+                                              "lines", "masses", "grounds", "text",     "legend"};
   return names;
 }
 
@@ -119,6 +121,8 @@ MarkerMessages::MarkerMessages(const Simulation& simulation, const std::string& 
       extent_(pictures::scene_extent(simulation)),
       energy_(balance(simulation.energies())),
       cylinders_(simulation),
+      bare_links_(simulation, extent_.radius),
+      floors_(pictures::floors_of(simulation.scene().grounds, pictures::up_of(simulation.scene().gravity), extent_)),
       trails_(simulation, choice.trail_duration) {
   for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
     const std::vector<Pose> sections = simulation.undeformed_sections(link, kPointsBetweenNodes);
@@ -144,6 +148,8 @@ visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std
   if (choice_.beams) add_beams(header, message);
   if (choice_.beams) cylinders_.add_to(header, message);
   if (choice_.lines) add_lines(header, message);
+  if (choice_.masses) bare_links_.add_to(header, message);
+  if (choice_.grounds) add_grounds(header, floors_, message);
   add_all_arrows(header, message);
   if (choice_.trails) {
     trails_.update();

@@ -14,9 +14,11 @@
 
 #include "flexarm/simulation/simulation.h"
 #include "messages/arrows.h"
+#include "messages/bare_link_markers.h"
 #include "messages/cylinder_markers.h"
 #include "messages/skin.h"
 #include "messages/trails.h"
+#include "pictures/floors.h"
 #include "pictures/scene_extent.h"
 
 namespace flexarm::messages {
@@ -31,6 +33,8 @@ struct MarkerChoice {
   bool reactions = true;  ///< of joints that have a sensor of kind `wrench` or `reaction`
   bool contacts = true;   ///< contact forces, on the first body of each pair
   bool lines = true;      ///< springs between points, and tendons
+  bool masses = true;     ///< of links that have neither a <visual> nor a beam
+  bool grounds = true;    ///< as large as the scene, not without end
   bool text = true;       ///< time, real-time factor, energies, and the reason if the simulation stands still
   bool legend = true;     ///< of colours and arrows
   double trail_duration = 10;  ///< simulated [s]
@@ -41,8 +45,8 @@ struct MarkerChoice {
 };
 
 /// Markers in the root frame; their sizes follow from the size of the scene. Beams are coloured by the strain at the
-/// edge of the section, from blue (no strain) over green to red. All links share one scale, and so do all arrows: red
-/// and the longest arrow stand for the largest values shown since the start or the last reset.
+/// edge of the section, from violet (no strain) over green to yellow. All links share one scale, and so do all arrows:
+/// yellow and the longest arrow stand for the largest values shown since the start or the last reset.
 class MarkerMessages {
  public:
   using Warn = std::function<void(const std::string&)>;
@@ -85,6 +89,8 @@ class MarkerMessages {
   double energy_;                 ///< balance of energy in the initial state: energy - work + dissipated [J]
   std::vector<Beam> beams_;
   CylinderMarkers cylinders_;
+  BareLinkMarkers bare_links_;
+  std::vector<pictures::Floor> floors_;
   Trails trails_;
   std::vector<Vector3> line_points_;  ///< scratch
   double largest_strain_ = 0;

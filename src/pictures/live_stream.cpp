@@ -42,7 +42,7 @@ LiveStream::LiveStream(const Simulation& simulation, const std::string& title)
 std::string LiveStream::picture() const {
   std::string meshes;
   for (const PictureMesh& mesh : picture_.meshes) append_mesh(mesh.surface, meshes);
-  std::string json = picture_as_json(picture_, {0, places_, {}, -1});
+  std::string json = picture_as_json(picture_, {0, places_, {}, -1, picture_.extent});
   json.insert(json.size() - 1, ", \"mesh_data\": \"" + base64(meshes) + "\"");
   return json;
 }

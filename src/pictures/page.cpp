@@ -9,6 +9,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "math/json_text.h"
+#include "pictures/color_scale.h"
 #include "pictures/tracks.h"
 #include "simulation/unfinished_file.h"
 
@@ -68,6 +70,13 @@ std::string elements_of(const std::vector<EncodedRun>& runs) {
   return out;
 }
 
+/// What all runs of a page share.
+std::string settings_of(FirstTime first_time) {
+  return fmt::format("<script type=\"application/json\" class=\"flexarm-settings\">{}</script>\n",
+                     "{\"colors\": " + color_scales_as_json() +
+                         ", \"first_time\": " + (first_time ? json_number(*first_time) : "null") + "}");
+}
+
 /// The player, with elements in the place of the runs.
 std::string page_with(const std::string& elements) {
   const std::string place = "<!-- runs -->";
@@ -82,22 +91,24 @@ std::string page_with(const std::string& elements) {
 
 }  // namespace
 
-std::string page_of(const std::vector<EncodedRun>& runs) {
-  return page_with(elements_of(runs));
+std::string page_of(const std::vector<EncodedRun>& runs, FirstTime first_time) {
+  return page_with(settings_of(first_time) + elements_of(runs));
 }
 
 std::string live_page() {
-  return page_with("<script type=\"application/json\" class=\"flexarm-live\">{\"stream\": \"/stream\"}</script>\n");
+  return page_with(settings_of({}) +
+                   "<script type=\"application/json\" class=\"flexarm-live\">{\"stream\": \"/stream\"}</script>\n");
 }
 
-void write_page(const std::string& path, const std::vector<EncodedRun>& runs) {
-  with_subject("'" + path + "'", [&] { UnfinishedFile(path, page_of(runs)).put_in_place(); });
+void write_page(const std::string& path, const std::vector<EncodedRun>& runs, FirstTime first_time) {
+  with_subject("'" + path + "'", [&] { UnfinishedFile(path, page_of(runs, first_time)).put_in_place(); });
 }
 
 // ---------------------------------------------------------------- writer
 
-PageWriter::PageWriter(const std::string& path, const Simulation& simulation, const RecordingOptions& options)
-    : path_(path), simulation_(simulation), recording_(simulation, options) {
+PageWriter::PageWriter(const std::string& path, const Simulation& simulation, const RecordingOptions& options,
+                       FirstTime first_time)
+    : path_(path), simulation_(simulation), recording_(simulation, options), first_time_(first_time) {
   // So that errors show before the run, but an older page stays until this one is complete.
   with_subject("'" + path + "'", [&] {
     page_of({});
@@ -111,7 +122,7 @@ void PageWriter::write_row(const Simulation& simulation) {
 
 void PageWriter::close() {
   if (recording_.last_time() != simulation_.time()) recording_.keep(simulation_, take_counts());
-  write_page(path_, {recording_.encode()});
+  write_page(path_, {recording_.encode()}, first_time_);
 }
 
 }  // namespace flexarm::pictures

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "pictures/shape_surface.h"
 #include "pictures/surface_meshes.h"
 #include "scene/joint_kind_names.h"
 
@@ -53,7 +54,9 @@ class PictureMaker {
   Picture make() {
     for (std::size_t i = 0; i < scene_.links.size(); ++i) add_link(i);
     for (const scene::JointDescription& joint : scene_.joints) add_joint(joint);
+    add_sticks();
     replace_lost_meshes();
+    complete_bare_links();
     for (std::size_t i = 0; i < scene_.force_elements.size(); ++i)
       if (const std::size_t points = simulation_.most_line_points(i); points > 1)
         picture_.lines.push_back({scene_.force_elements[i]->kind(), scene_.force_elements[i]->name, i, points});
@@ -65,6 +68,7 @@ class PictureMaker {
   void add_link(std::size_t index) {
     const scene::LinkDescription& link = scene_.links[index];
     picture_.links.push_back({link.name});
+    picture_.links.back().is_fixed = is_fixed(simulation_, index);
     add_beam(index);
     for (const scene::VisualDescription& visual : link.visuals) {
       const std::string failure = add_shape(visual, picture_.links.back());
@@ -164,9 +168,6 @@ class PictureMaker {
   void add_joint(const scene::JointDescription& joint) {
     const int parent = links_.at(joint.parent), child = links_.at(joint.child);
     picture_.links[child].parent = parent;
-    if (picture_.links[parent].beam < 0 && joint.kind != scene::JointKind::Floating &&
-        joint.kind != scene::JointKind::Planar)
-      picture_.links[parent].stick.push_back(place_in(parent, child));
     if (joint.is_hidden) return;
     PictureJoint shown{joint.name, name_of(joint.kind), static_cast<std::size_t>(child), {}, {}};
     if (has_axis(joint.kind)) shown.axis = joint.axis;
@@ -175,39 +176,36 @@ class PictureMaker {
     picture_.joints.push_back(std::move(shown));
   }
 
+  void add_sticks() {
+    std::vector<std::vector<Vector3>> places = carried_places(simulation_);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (picture_.links[i].beam < 0) picture_.links[i].stick = std::move(places[i]);
+  }
+
+  void complete_bare_links() {
+    for (std::size_t i = 0; i < picture_.links.size(); ++i) {
+      PictureLink& link = picture_.links[i];
+      if (link.beam >= 0 || !link.shapes.empty()) continue;
+      // Shapes that touch others stand for those that are missing. A mesh among them that cannot be read is told
+      // elsewhere, if it has contact.
+      for (const scene::VisualDescription& shape : scene_.links[i].collisions) add_shape(shape, link);
+      if (!link.shapes.empty()) continue;
+      link.mass = mass_ball(scene_.links[i]);
+      if (link.mass) link.stick.push_back(link.mass->at);
+    }
+  }
+
   /// Probes, and corners of boxes around shapes, in the frames of their links.
   std::vector<std::vector<Vector3>> shown_points() const {
     std::vector<std::vector<Vector3>> points(picture_.links.size());
     for (const scene::Probe& probe : scene_.probes) points[links_.at(probe.link)].push_back(probe.at);
     for (std::size_t link = 0; link < points.size(); ++link)
       for (const PictureShape& shape : picture_.links[link].shapes) {
-        const Eigen::AlignedBox3d box = box_around(shape);
+        const Eigen::AlignedBox3d box = box_around(shape, picture_.meshes);
         for (int corner = 0; corner < 8; ++corner)
           points[link].push_back(shape.pose * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
       }
     return points;
-  }
-
-  Eigen::AlignedBox3d box_around(const PictureShape& shape) const {
-    Eigen::AlignedBox3d box;
-    const auto add_half = [&](const Vector3& half) { box.extend(half).extend(-half); };
-    std::visit(
-        [&](const auto& given) {
-          using Shape = std::decay_t<decltype(given)>;
-          if constexpr (std::is_same_v<Shape, scene::BoxShape>) add_half(0.5 * given.size);
-          if constexpr (std::is_same_v<Shape, scene::SphereShape>) add_half(Vector3::Constant(given.radius));
-          if constexpr (std::is_same_v<Shape, scene::CylinderShape>)
-            add_half({given.radius, given.radius, 0.5 * given.length});
-          if constexpr (std::is_same_v<Shape, std::size_t>)
-            for (const auto& vertex : picture_.meshes[given].surface.vertices) box.extend(vertex.position);
-        },
-        shape.shape);
-    return box;
-  }
-
-  /// The origin of a link in the frame of another one, now.
-  Vector3 place_in(int link, int other) const {
-    return simulation_.link_pose(link).inverse() * simulation_.link_pose(other).position;
   }
 
   static bool is_of(const scene::JointDescription& joint, const std::string& column) {

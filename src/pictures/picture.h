@@ -10,6 +10,7 @@
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/simulation.h"
 #include "meshes/surface_mesh.h"
+#include "pictures/bare_links.h"
 #include "pictures/scene_extent.h"
 
 namespace flexarm::pictures {
@@ -25,10 +26,12 @@ struct PictureLink {
   std::string name;
   int parent = -1;  ///< index of a link; -1: none
   int beam = -1;    ///< index into Picture::beams; -1: none
-  /// Where the children are that it carries, in the link's frame [m]. Lines from its origin to these points stand for a
-  /// link without shapes.
+  /// Where the children are that it carries, and the centre of mass of a link with a MassBall, in the link's frame [m].
+  /// Lines from its origin to these points stand for a link without shapes.
   std::vector<Vector3> stick = {};
   std::vector<PictureShape> shapes = {};
+  std::optional<MassBall> mass = {};  ///< what shows the mass of a link that has neither shapes nor a beam
+  bool is_fixed = false;              ///< nothing can move or bend it
 };
 
 struct PictureMesh {

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "math/json_text.h"
+#include "pictures/floors.h"
 
 namespace flexarm::pictures {
 namespace {
@@ -64,13 +65,18 @@ std::string json_shape(const PictureShape& shape) {
       .done();
 }
 
-std::string json_link(const PictureLink& link) {
+std::string json_mass(const MassBall& mass, double scene_radius) {
+  return JsonObject().add("at", json_array(mass.at)).add_number("radius", shown_radius(mass, scene_radius)).done();
+}
+
+std::string json_link(const PictureLink& link, double scene_radius) {
   return JsonObject()
       .add_text("name", link.name)
       .add_number("parent", link.parent)
       .add_number("beam", link.beam)
       .add("stick", json_list(link.stick, [](const Vector3& point) { return json_array(point); }))
       .add("shapes", json_list(link.shapes, json_shape))
+      .add("mass", link.mass ? json_mass(*link.mass, scene_radius) : "null")
       .done();
 }
 
@@ -110,28 +116,32 @@ std::string json_arrows(const std::array<std::size_t, kArrowKinds>& counts) {
   return "[" + out + "]";
 }
 
-void add_scenery(const Picture& picture, JsonObject& out) {
+std::string json_floor(const Floor& floor) {
+  return JsonObject()
+      .add("pose", json_pose(floor.pose))
+      .add("size", json_number_list({floor.length, floor.width}))
+      .add_number("cell", floor.cell)
+      .add("ground", floor.is_ground ? "true" : "false")
+      .done();
+}
+
+void add_scenery(const Picture& picture, const SceneExtent& extent, JsonObject& out) {
   out.add_text("name", picture.name)
       .add_text("title", picture.title)
       .add("notes", json_list(picture.notes, json_string))
       .add("extent", JsonObject()
-                         .add("center", json_array(picture.extent.center))
-                         .add_number("radius", picture.extent.radius)
+                         .add("center", json_array(extent.center))
+                         .add_number("radius", extent.radius)
+                         .add("half", json_array(extent.half))
                          .done())
       .add("gravity", json_array(picture.gravity))
-      .add("grounds", json_list(picture.grounds, [](const scene::GroundDescription& ground) {
-             return JsonObject()
-                 .add_text("name", ground.name)
-                 .add("normal", json_array(ground.normal))
-                 .add_number("offset", ground.offset)
-                 .done();
-           }));
+      .add("floors", json_list(floors_of(picture.grounds, up_of(picture.gravity), extent), json_floor));
 }
 
-void add_parts(const Picture& picture, JsonObject& out) {
+void add_parts(const Picture& picture, double scene_radius, JsonObject& out) {
   std::map<std::string, std::size_t> links;
   for (std::size_t i = 0; i < picture.links.size(); ++i) links[picture.links[i].name] = i;
-  out.add("links", json_list(picture.links, json_link))
+  out.add("links", json_list(picture.links, [&](const PictureLink& link) { return json_link(link, scene_radius); }))
       .add("meshes", json_list(picture.meshes, json_mesh))
       .add("beams", json_list(picture.beams, json_beam))
       .add("joints", json_list(picture.joints, json_joint))
@@ -179,8 +189,8 @@ std::string without_tags(const std::string& json) {
 
 std::string picture_as_json(const Picture& picture, const RunShape& run) {
   JsonObject out;
-  add_scenery(picture, out);
-  add_parts(picture, out);
+  add_scenery(picture, run.extent, out);
+  add_parts(picture, run.extent.radius, out);
   add_run(run, out);
   return without_tags(out.done());
 }

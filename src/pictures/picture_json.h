@@ -12,7 +12,8 @@ struct RunShape {
   std::size_t instants;
   std::array<std::size_t, kArrowKinds> arrows;  ///< largest number of each kind
   std::vector<Clip> clips;
-  int still;  ///< index of an instant; -1: none
+  int still;           ///< index of an instant; -1: none
+  SceneExtent extent;  ///< of what is shown
 };
 
 /// The picture as JSON, see docs/notes/page.md. It has no `<`, so that a page can contain it.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pictures/picture_json.h"
+#include "pictures/run_extent.h"
 #include "pictures/tracks.h"
 
 namespace flexarm::pictures {
@@ -208,7 +209,8 @@ EncodedRun Recording::encode() const {
       }
   append_values(columns, width);
   for (const PictureMesh& mesh : picture_.meshes) append_mesh(mesh.surface, bytes);
-  return {picture_as_json(picture_, {times_.size(), most, clips_, still_}), deflated(bytes), picture_.notes};
+  const RunShape shape{times_.size(), most, clips_, still_, run_extent(picture_, values)};
+  return {picture_as_json(picture_, shape), deflated(bytes), picture_.notes};
 }
 
 }  // namespace flexarm::pictures

@@ -17,6 +17,30 @@ struct Sphere {
   double radius;
 };
 
+constexpr double kNear = 2;         ///< of fixed things, in radii of what can move
+constexpr double kRoundOff = 1e-6;  ///< what can move and is smaller, relative to everything, has no size of its own
+
+/// Encloses the balls that `counts` accepts.
+template <class Counts>
+SceneExtent enclose(const std::function<void(const ExtentBallVisitor&)>& visit_balls, const Counts& counts) {
+  const auto visit = [&](const auto& use) {
+    visit_balls([&](const ExtentBall& ball) {
+      if (ball.center.allFinite() && std::isfinite(ball.radius) && counts(ball)) use(ball);
+    });
+  };
+  Eigen::AlignedBox3d box;
+  visit([&](const ExtentBall& ball) {
+    const Vector3 half = Vector3::Constant(ball.radius);
+    box.extend(Eigen::AlignedBox3d(ball.center - half, ball.center + half));
+  });
+  if (box.isEmpty()) return {Vector3::Zero(), 0, Vector3::Zero()};
+  SceneExtent out{box.center(), 0, 0.5 * box.sizes()};
+  visit([&](const ExtentBall& ball) {
+    out.radius = std::max(out.radius, (ball.center - out.center).norm() + ball.radius);
+  });
+  return out;
+}
+
 /// Follows the chains of joints from the root.
 class ReachFinder {
  public:
@@ -28,7 +52,7 @@ class ReachFinder {
     for (std::size_t link = 0; link < scene.links.size(); ++link) add_link(link);
   }
 
-  const std::vector<Sphere>& spheres() const { return spheres_; }
+  const std::vector<ExtentBall>& balls() const { return balls_; }
 
  private:
   /// The places that a link's frame may reach: a sphere or, if no joint moves the link, its present place.
@@ -60,12 +84,13 @@ class ReachFinder {
 
   void add_link(std::size_t link) {
     const Reach reach = reach_of(link);
+    const bool stands = is_fixed(simulation_, link);
     if (reach.moves) {
-      spheres_.push_back({reach.frame.center, reach.frame.radius + farthest_point(link, place(link))});
+      balls_.push_back({reach.frame.center, reach.frame.radius + farthest_point(link, place(link)), stands});
       return;
     }
-    spheres_.push_back(reach.frame);
-    for (const Vector3& point : points(link)) spheres_.push_back({point, 0});
+    balls_.push_back({reach.frame.center, reach.frame.radius, stands});
+    for (const Vector3& point : points(link)) balls_.push_back({point, 0, stands});
   }
 
   const Reach& reach_of(std::size_t link) {
@@ -116,22 +141,38 @@ class ReachFinder {
   std::map<std::string, std::size_t> links_;
   std::map<std::size_t, const scene::JointDescription*> carriers_;
   std::map<std::size_t, Reach> reaches_;
-  std::vector<Sphere> spheres_;
+  std::vector<ExtentBall> balls_;
 };
 
 }  // namespace
 
+SceneExtent extent_around(const std::function<void(const ExtentBallVisitor&)>& visit_balls) {
+  const SceneExtent all = enclose(visit_balls, [](const ExtentBall&) { return true; });
+  const SceneExtent moving = enclose(visit_balls, [](const ExtentBall& ball) { return !ball.is_fixed; });
+  SceneExtent out = all;
+  if (moving.radius > kRoundOff * all.radius)
+    out = enclose(visit_balls, [&](const ExtentBall& ball) {
+      return !ball.is_fixed || (ball.center - moving.center).norm() + ball.radius <= kNear * moving.radius;
+    });
+  if (!(out.radius > 0)) out = {out.center, 1, Vector3::Ones()};
+  return out;
+}
+
+bool is_fixed(const Simulation& simulation, std::size_t link) {
+  return simulation.is_fixed_to_world(link) && !simulation.is_flexible(link);
+}
+
 SceneExtent scene_extent(const Simulation& simulation, const std::vector<std::vector<Vector3>>& more_points) {
   const ReachFinder finder(simulation, more_points);
-  Eigen::AlignedBox3d box;
-  for (const Sphere& sphere : finder.spheres()) {
-    const Vector3 half = Vector3::Constant(sphere.radius);
-    box.extend(Eigen::AlignedBox3d(sphere.center - half, sphere.center + half));
+  std::vector<ExtentBall> balls = finder.balls();
+  std::vector<Vector3> line;
+  for (std::size_t i = 0; i < simulation.scene().force_elements.size(); ++i) {
+    simulation.line_points(i, line);
+    for (const Vector3& point : line) balls.push_back({point, 0, false});
   }
-  double radius = 0;
-  for (const Sphere& sphere : finder.spheres())
-    radius = std::max(radius, (sphere.center - box.center()).norm() + sphere.radius);
-  return {box.center(), radius > 0 ? radius : 1};
+  return extent_around([&](const ExtentBallVisitor& visit) {
+    for (const ExtentBall& ball : balls) visit(ball);
+  });
 }
 
 }  // namespace flexarm::pictures

@@ -1,6 +1,8 @@
 #include "pictures/shape_surface.h"
 
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "math/pi.h"
 
@@ -93,6 +95,23 @@ SurfaceMesh surface_of_shape(const PictureShape& shape, const std::vector<Pictur
     SurfaceMesh operator()(std::size_t mesh) const { return meshes[mesh].surface; }
   } const surface{meshes};
   return std::visit(surface, shape.shape);
+}
+
+Eigen::AlignedBox3d box_around(const PictureShape& shape, const std::vector<PictureMesh>& meshes) {
+  Eigen::AlignedBox3d box;
+  const auto add_half = [&](const Vector3& half) { box.extend(half).extend(-half); };
+  std::visit(
+      [&](const auto& given) {
+        using Shape = std::decay_t<decltype(given)>;
+        if constexpr (std::is_same_v<Shape, scene::BoxShape>) add_half(0.5 * given.size);
+        if constexpr (std::is_same_v<Shape, scene::SphereShape>) add_half(Vector3::Constant(given.radius));
+        if constexpr (std::is_same_v<Shape, scene::CylinderShape>)
+          add_half({given.radius, given.radius, 0.5 * given.length});
+        if constexpr (std::is_same_v<Shape, std::size_t>)
+          for (const auto& vertex : meshes[given].surface.vertices) box.extend(vertex.position);
+      },
+      shape.shape);
+  return box;
 }
 
 }  // namespace flexarm::pictures

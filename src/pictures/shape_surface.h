@@ -1,6 +1,8 @@
 #pragma once
 /// Surfaces of the shapes of links, as triangles.
 
+#include <Eigen/Geometry>
+
 #include "pictures/picture.h"
 #include "pictures/surface_meshes.h"
 
@@ -16,5 +18,8 @@ SurfaceMesh sphere_surface(const scene::SphereShape& sphere, int sides, int band
 
 /// The surface of any shape, with 32 sides and 20 bands if it is round.
 SurfaceMesh surface_of_shape(const PictureShape& shape, const std::vector<PictureMesh>& meshes);
+
+/// A box around a shape, along the axes of the shape's frame.
+Eigen::AlignedBox3d box_around(const PictureShape& shape, const std::vector<PictureMesh>& meshes);
 
 }  // namespace flexarm::pictures

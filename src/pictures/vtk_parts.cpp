@@ -152,7 +152,7 @@ class VtkBeams : public VtkPart {
 
 // ---------------------------------------------------------------- bodies
 
-/// Surfaces of rigid links, and lines in the place of links without shapes.
+/// Surfaces of rigid links, and lines and balls of mass in the place of links without shapes.
 class VtkBodies : public VtkPart {
  public:
   VtkBodies(const Simulation& simulation, const Picture& picture)
@@ -160,9 +160,17 @@ class VtkBodies : public VtkPart {
     // Lines first, since VTK numbers them first.
     for (std::size_t i = 0; i < picture.links.size(); ++i)
       if (picture.links[i].beam < 0 && picture.links[i].shapes.empty()) add_lines(i, picture.links[i].stick);
-    for (std::size_t i = 0; i < picture.links.size(); ++i)
-      if (picture.links[i].beam < 0)
-        for (const PictureShape& shape : picture.links[i].shapes) add_surface(i, shape, picture.meshes);
+    for (std::size_t i = 0; i < picture.links.size(); ++i) {
+      const PictureLink& link = picture.links[i];
+      if (link.beam >= 0) continue;
+      for (const PictureShape& shape : link.shapes) add_surface(i, shape, picture.meshes);
+      if (link.mass)
+        add_surface(i,
+                    {Pose{link.mass->at, Quaternion::Identity()},
+                     scene::SphereShape{shown_radius(*link.mass, picture.extent.radius)},
+                     {}},
+                    picture.meshes);
+    }
     constant_.point_count = points_.size();
     constant_.lines = vtk_cells(lines_);
     constant_.line_count = lines_.ends.size();

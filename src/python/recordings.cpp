@@ -72,10 +72,11 @@ Encoded encode_rows(GuardedSimulation& guarded, const std::vector<std::pair<std:
   return encoded(pictures::record_rows(guarded.use(), out, {title, rate}));
 }
 
-std::string page(const std::vector<Encoded>& runs) {
+std::string page(const std::vector<Encoded>& runs, std::optional<double> at) {
+  if (at && !std::isfinite(*at)) throw std::invalid_argument(fmt::format("at: expected a finite time, got {}", *at));
   std::vector<pictures::EncodedRun> out;
   for (const auto& [picture, motion] : runs) out.push_back({picture, motion, {}});
-  return pictures::page_of(out);
+  return pictures::page_of(out, at);
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ Raises StepError if a step fails; the instants until then are kept.)")
       .def("_encode", &SimulationRecording::encode);
   module.def("_encode_rows", &encode_rows, py::arg("simulation"), py::arg("columns"), py::arg("rows"), py::arg("title"),
              py::arg("rate"), py::arg("notes"));
-  module.def("_page", &page, py::arg("runs"));
+  module.def("_page", &page, py::arg("runs"), py::arg("at") = py::none());
 }
 
 }  // namespace flexarm::python

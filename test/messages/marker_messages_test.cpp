@@ -12,6 +12,7 @@
 #include "messages/marker_messages.h"
 #include "messages/picture_axes.h"
 #include "messages/state_messages.h"
+#include "pictures/color_scale.h"
 #include "scene/scene_builder.h"
 
 namespace flexarm::messages {
@@ -103,7 +104,7 @@ TEST_F(Markers, HaveAllThatThereIs) {
   step(5);
   const MarkerArray message = shown(messages);
   EXPECT_EQ(names(message), (std::set<std::string>{"boom", "trails", "joint efforts", "applied wrenches", "reactions",
-                                                   "text", "legend"}));
+                                                   "masses", "text", "legend"}));
   std::set<std::pair<std::string, int>> ids;
   for (const Marker& marker : message.markers) {
     EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
@@ -178,13 +179,81 @@ TEST_F(Markers, HaveWhatIsChosen) {
   simulation_.command_effort(0, 5);
   step(5);
   for (const std::string& name : MarkerChoice::names()) {
-    MarkerChoice choice{false, false, false, false, false, false, false, false, false};
+    MarkerChoice choice{false, false, false, false, false, false, false, false, false, false, false};
     *choice.find(name) = true;
     MarkerMessages messages = this->messages(choice);
     shown(messages);
     EXPECT_LE(names(shown(messages)).size(), 1u) << name;
   }
   EXPECT_EQ(MarkerChoice().find("beam"), nullptr);
+}
+
+// A mass that nothing else shows is a ball, with a line to it from the link's origin.
+TEST(MassMarkers, ShowLinksWithoutShapes) {
+  constexpr double kMass = 4, kRadius = 0.1;
+  scene::SceneBuilder b("pendulum");
+  b.body("bob", kMass, {0, 0, -2}, 0.4 * kMass * kRadius * kRadius * Matrix3::Identity());
+  b.body("box", 1, Vector3::Zero(), 0.1 * Matrix3::Identity());
+  b.scene.links.back().visuals.push_back({Pose(), scene::BoxShape{{1, 1, 1}}});
+  b.joint("hinge", JointKind::Continuous, "world", "bob").axis = Vector3::UnitY();
+  b.joint("other", JointKind::Continuous, "world", "box").axis = Vector3::UnitY();
+  Simulation simulation(b.scene);
+  simulation.set_joint_state({{0, M_PI / 2, {}}});
+  MarkerMessages messages(simulation, "frame", {}, nullptr);
+  const MarkerArray message = shown(messages);
+  const auto is_ball = [](const Marker& marker) { return marker.type == Marker::SPHERE; };
+  ASSERT_EQ(std::count_if(message.markers.begin(), message.markers.end(), is_ball), 1);
+  const Marker& ball = *std::find_if(message.markers.begin(), message.markers.end(), is_ball);
+  EXPECT_EQ(ball.ns, "masses");
+  EXPECT_DOUBLE_EQ(ball.scale.x, 2 * kRadius);
+  EXPECT_LT((to_vector(ball.pose.position) - Vector3(-2, 0, 0)).norm(), 1e-12);
+  const auto lines = std::find_if(message.markers.begin(), message.markers.end(), [](const Marker& marker) {
+    return marker.ns == "masses" && marker.type == Marker::LINE_LIST;
+  });
+  ASSERT_NE(lines, message.markers.end());
+  const auto& points = lines->points;
+  EXPECT_TRUE(std::any_of(points.begin(), points.end(), [](const geometry_msgs::Point& point) {
+    return (to_vector(point) - Vector3(-2, 0, 0)).norm() < 1e-12;
+  }));
+}
+
+// Grounds have no end, but are drawn where the arm is: the box around all that it reaches, 2 m each way, and a margin.
+TEST(GroundMarkers, AreAsLargeAsNeeded) {
+  scene::SceneBuilder b = arm();
+  b.scene.grounds.push_back({"floor", Vector3::UnitZ(), -0.5});
+  const Simulation simulation(b.scene);
+  MarkerMessages messages(simulation, "frame", {}, nullptr);
+  const MarkerArray message = shown(messages);
+  const Marker* plane = find(message, "grounds");
+  ASSERT_TRUE(plane);
+  EXPECT_EQ(plane->type, Marker::CUBE);
+  EXPECT_EQ(plane->pose.position.z, -0.5);
+  for (const double size : {plane->scale.x, plane->scale.y}) {
+    EXPECT_GT(size, 4);
+    EXPECT_LT(size, 6);
+  }
+}
+
+// The legend's bar has the colours of pages from its lower to its upper end, shaded in one way.
+TEST_F(Markers, LegendHasTheColoursOfPages) {
+  MarkerMessages messages = this->messages();
+  const MarkerArray message = shown(messages);
+  const Marker& bar = *std::find_if(message.markers.begin(), message.markers.end(), [](const Marker& marker) {
+    return marker.ns == "legend" && marker.type == Marker::TRIANGLE_LIST;
+  });
+  const Vector3 up = picture_axes().up;
+  const auto lower = [&](const geometry_msgs::Point& a, const geometry_msgs::Point& c) {
+    return to_vector(a).dot(up) < to_vector(c).dot(up);
+  };
+  const auto ends = std::minmax_element(bar.points.begin(), bar.points.end(), lower);
+  const auto expect_color = [&](std::vector<geometry_msgs::Point>::const_iterator point, double part) {
+    const auto& color = bar.colors[static_cast<std::size_t>(point - bar.points.begin())];
+    const auto expected = pictures::color_of_amount(part);
+    EXPECT_NEAR(color.r / color.b, expected[0] / expected[2], 1e-5);
+    EXPECT_NEAR(color.g / color.b, expected[1] / expected[2], 1e-5);
+  };
+  expect_color(ends.first, 0);
+  expect_color(ends.second, 1);
 }
 
 // The longest arrow is the largest force since the start, and the legend names this force. A reset starts anew.

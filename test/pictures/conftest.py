@@ -32,9 +32,9 @@ def browser(one_browser):
 
 @pytest.fixture
 def play(browser, tmp_path):
-    """Return a function that opens a page with runs and returns the messages of the console."""
-    def open_page(*runs):
+    """Return a function that opens a page with runs and returns the messages of the console. It shows the start."""
+    def open_page(*runs, **settings):
         path = str(tmp_path / "page.html")
-        write_page(path, *runs)
+        write_page(path, *runs, **settings)
         return browser.open(path)
     return open_page

@@ -81,7 +81,16 @@ def text_of(name):
     raise FileNotFoundError(name)
 
 
-def page(elements):
+# Other colours than those of the product, so that tests see where they come from.
+SETTINGS = {"colors": {"amounts": ["#000080", "#008000", "#ffff00"], "signed": ["#0000ff", "#808080", "#ff0000"]},
+            "first_time": 0}
+
+
+def settings_element(settings):
+    return f'<script type="application/json" class="flexarm-settings">{json.dumps(settings)}</script>'
+
+
+def page(elements, settings):
     """Return the player's page, with all that it names in one file, and these elements as its runs."""
     lines = []
     for line in text_of("player.html").split("\n"):
@@ -92,15 +101,18 @@ def page(elements):
         elif script:
             line = "<script>\n" + text_of(script.group(1)) + "</script>"
         elif line.strip() == "<!-- runs -->":
-            line = "\n".join(elements)
+            line = "\n".join([settings_element(settings), *elements])
         lines.append(line)
     return "\n".join(lines)
 
 
-def write_page(path, *runs):
-    """Write a page that plays runs. A text in place of a run goes into the page as it is."""
+def write_page(path, *runs, **settings):
+    """Write a page that plays runs. A text in place of a run goes into the page as it is.
+
+    @param settings  other values of SETTINGS
+    """
     with open(path, "w", encoding="utf-8") as file:
-        file.write(page([run if isinstance(run, str) else run.elements() for run in runs]))
+        file.write(page([run if isinstance(run, str) else run.elements() for run in runs], {**SETTINGS, **settings}))
 
 
 # ---------------------------------------------------------------- motion
@@ -260,12 +272,13 @@ def swinging_arm(frames=201, duration=4.0, name="swinging arm", phase=0.0):
     picture = {
         "name": name, "title": f"arm.urdf, {duration:g} s",
         "notes": ["The mesh bracket.stl was not found; it is not shown."],
-        "extent": {"center": [0, 0, 0.42], "radius": 1.7}, "gravity": [0, 0, -9.81], "links": links,
+        "extent": {"center": [0, 0, 0.42], "radius": 1.7, "half": [1.7, 1.7, 1.7]}, "gravity": [0, 0, -9.81],
+        "links": links,
         "meshes": [{"name": "wedge", "vertices": 18, "triangles": 8}],
         "beams": [{"link": 2, "arc_lengths": list(upper_arcs), "sections": rest_sections(upper_arcs), "radius": 0.027},
                   {"link": 3, "arc_lengths": list(lower_arcs), "sections": rest_sections(lower_arcs), "radius": 0.018}],
         "joints": joints, "probes": [{"name": "tip", "link": 4}],
-        "grounds": [{"name": "floor", "normal": [0, 0, 1], "offset": 0}],
+        "floors": [{"pose": at(0, 0, 0), "size": [4, 3], "cell": 0.5, "ground": True}],
         "arrows": [{"kind": "effort", "count": 1}, {"kind": "load", "count": 1}, {"kind": "reaction", "count": 1}],
         "columns": columns, "frames": frames, "clips": [], "still": None,
     }
@@ -278,11 +291,11 @@ def marker(path, duration=1.0, gravity=(0, 0, -9.81), color=(1, 0, 1, 1), name="
     t = np.linspace(0, duration, len(path))
     still = np.broadcast_to([0.0, 0, 0, 1], (len(path), 4))
     picture = {
-        "name": name, "title": name, "notes": [], "extent": {"center": [0, 0, 0], "radius": 1},
+        "name": name, "title": name, "notes": [], "extent": {"center": [0, 0, 0], "radius": 1, "half": [1, 1, 1]},
         "gravity": list(gravity),
         "links": [{"name": "ball", "parent": -1, "beam": -1, "stick": [], "shapes": [
             shape("sphere", at(0, 0, 0), list(color), radius=0.03)]}], "meshes": [], "beams": [], "joints": [],
-        "probes": [], "grounds": [], "arrows": [], "columns": [], "frames": len(path), "clips": [], "still": None,
+        "probes": [], "floors": [], "arrows": [], "columns": [], "frames": len(path), "clips": [], "still": None,
     }
     return Run(picture, t, Chain(path, still.copy()).tracks())
 
@@ -302,11 +315,12 @@ def modes(name="modes"):
     root = Chain(np.zeros((t.size, 3)), still.copy())
     arcs, _, tracks = bent_beam(root, 1.0, 13, curvature, 20.0)
     picture = {
-        "name": name, "title": "rod.urdf, modes", "notes": [], "extent": {"center": [0.5, 0, 0], "radius": 0.7},
+        "name": name, "title": "rod.urdf, modes", "notes": [],
+        "extent": {"center": [0.5, 0, 0], "radius": 0.7, "half": [0.7, 0.7, 0.7]},
         "gravity": [0, 0, -9.81],
         "links": [{"name": "rod", "parent": -1, "beam": 0, "stick": [], "shapes": []}], "meshes": [],
         "beams": [{"link": 0, "arc_lengths": list(arcs), "sections": rest_sections(arcs), "radius": 0.01}],
-        "joints": [], "probes": [], "grounds": [], "arrows": [], "columns": [], "frames": int(t.size), "clips": clip,
+        "joints": [], "probes": [], "floors": [], "arrows": [], "columns": [], "frames": int(t.size), "clips": clip,
         "still": 0,
     }
     return Run(picture, t, root.tracks() + tracks)
@@ -328,8 +342,9 @@ def net(beams=500, sections=20, frames=60):
         descriptions.append({"link": k, "arc_lengths": list(arcs), "sections": rest_sections(arcs), "radius": 0.01})
     picture = {
         "name": "net", "title": f"{beams * sections} sections", "notes": [],
-        "extent": {"center": [0.2 * side, 0.2 * side, 0.4], "radius": 0.3 * side}, "gravity": [0, 0, -9.81],
-        "links": links, "meshes": [], "beams": descriptions, "joints": [], "probes": [], "grounds": [], "arrows": [],
+        "extent": {"center": [0.2 * side, 0.2 * side, 0.4], "radius": 0.3 * side, "half": [0.2 * side, 0.2 * side, 0.1]},
+        "gravity": [0, 0, -9.81],
+        "links": links, "meshes": [], "beams": descriptions, "joints": [], "probes": [], "floors": [], "arrows": [],
         "columns": [], "frames": frames, "clips": [], "still": None,
     }
     return Run(picture, t, roots + tracks)

@@ -67,5 +67,34 @@ TEST(SceneExtent, IsOfThePresentPlacesOfWhatNoJointMoves) {
   EXPECT_NEAR((extent.center - Vector3(1, 0, 0)).norm(), 0, 1e-12);
 }
 
+// Walls do not make an arm small in the picture, but its pedestal belongs to it.
+TEST(SceneExtent, HasOfWhatIsFixedOnlyWhatIsNear) {
+  const SceneExtent alone = scene_extent(Simulation(column_arm().scene));
+  const auto with_fixed = [](const Vector3& place) {
+    scene::SceneBuilder b = column_arm();
+    b.body("fixed", 1, Vector3::Zero(), 0.1 * Matrix3::Identity());
+    b.joint("weld", JointKind::Fixed, "world", "fixed").origin.position = place;
+    return scene_extent(Simulation(b.scene));
+  };
+  const SceneExtent far = with_fixed({50, 0, 0}), near = with_fixed({0, 0, -2});
+  EXPECT_EQ(far.radius, alone.radius);
+  EXPECT_EQ(far.center, alone.center);
+  EXPECT_GE((near.center - Vector3(0, 0, -2)).norm(), near.radius * (1 - 1e-12));
+  EXPECT_LE((near.center - Vector3(0, 0, -2)).norm(), near.radius * (1 + 1e-12));
+}
+
+TEST(SceneExtent, IsOfAllIfNothingCanMove) {
+  scene::SceneBuilder b("still");
+  for (const char* name : {"left", "right"}) {
+    b.body(name, 1, Vector3::Zero(), 0.1 * Matrix3::Identity());
+    b.joint(std::string("weld_") + name, JointKind::Fixed, "world", name).origin.position =
+        Vector3(name[0] == 'l' ? -3 : 5, 0, 0);
+  }
+  const SceneExtent extent = scene_extent(Simulation(b.scene));
+  EXPECT_NEAR(extent.radius, 4, 1e-12);
+  EXPECT_LT((extent.center - Vector3(1, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((extent.half - Vector3(4, 0, 0)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace flexarm::pictures

@@ -135,6 +135,49 @@ def test_shapes_and_colours_of_rigid_links():
     assert shapes[0]["size"] == [1, 2, 3] and shapes[1]["radius"] == 1 and shapes[1]["length"] == 2
 
 
+def test_a_mass_without_shape_is_a_ball(tmp_path):
+    """A ball of 5 kg and 0.1 m, by its inertia; a link with a shape or without mass has none."""
+    inertia = 0.4 * 5 * 0.1**2
+    run = still("""<robot name="bob"> <link name="world"/> <link name="rod"/> <link name="bob"> <inertial>
+        <origin xyz="0 0 -1.5"/> <mass value="5"/> <inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/>
+        </inertial> </link> {1}
+        <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+        <joint name="weld" type="fixed"> <parent link="rod"/> <child link="bob"/> <origin xyz="0 0 -0.5"/> </joint>
+        <joint name="free" type="floating"> <parent link="world"/> <child link="box"/> </joint>
+        </robot>""".format(inertia, body("box", visual('<box size="1 1 1"/>'))))
+    links = {link["name"]: link for link in run.picture["links"]}
+    assert links["bob"]["mass"] == {"at": [0, 0, -1.5], "radius": pytest.approx(0.1, rel=1e-12)}
+    assert links["bob"]["stick"] == [[0, 0, -1.5]]
+    assert links["rod"]["stick"] == [[0, 0, -0.5]]
+    assert [links[name]["mass"] for name in ("world", "rod", "box")] == [None] * 3
+
+
+def test_extent_is_of_what_moves_during_the_run():
+    """A ball is thrown along a parabola, 4 m far and 1.27 m high, beside a house and a wall."""
+    def fixed(name, place, size):
+        return """<link name="%s"> <visual> <geometry> <box size="%s"/> </geometry> </visual> </link>
+            <joint name="weld_%s" type="fixed"> <parent link="world"/> <child link="%s"/> <origin xyz="%s"/>
+            </joint>""" % (name, size, name, name, place)
+    scene = """<robot name="throw"> <link name="world"/> %s %s %s
+        <joint name="free" type="floating"> <parent link="world"/> <child link="ball"/> </joint>
+        <ground name="floor"/> </robot>""" % (
+            body("ball", '<visual> <geometry> <sphere radius="0.1"/> </geometry> </visual>'),
+            fixed("house", "60 0 5", "10 10 10"), fixed("post", "2 0.5 0.5", "0.1 0.1 1"))
+    simulation = flexarm.Simulation(flexarm.read_scene_text(scene))
+    simulation.set_joint_state(velocities={"free/x": 4, "free/z": 5})
+    recording = flexarm.Recording(simulation)
+    recording.run(until=1.0)
+    run, = runs_of(flexarm.show(recording).text)
+    extent, (floor,) = run.picture["extent"], run.picture["floors"]
+    low, high = (np.array(extent["center"]) + sign * np.array(extent["half"]) for sign in (-1, 1))
+    top = np.max(run.link("ball")[:, 2])
+    assert low == pytest.approx([-0.1, -0.1, -0.1], abs=2e-3)
+    assert high == pytest.approx([4.1, 0.55, top + 0.1], abs=2e-3)
+    assert np.linalg.norm(extent["half"]) == pytest.approx(extent["radius"], rel=0.1)
+    assert floor["ground"] and floor["pose"][2:] == [0, 0, 0, 0, 1]
+    assert 4.1 < floor["size"][0] < 7 and 1 < floor["size"][1] < 4
+
+
 def test_meshes_are_in_the_page_and_missing_ones_are_told(tmp_path):
     (tmp_path / "wedge.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
     mesh = '<mesh filename="file://%s"/>'

@@ -56,6 +56,22 @@ class Rviz(unittest.TestCase):
         # Above and below there is space for five lines of text, each 1.3 times 6 % of the radius high.
         self.assertGreater(distance * math.tan(0.5 * camera["Field of View"]), outline + 5 * 1.3 * 0.06 + 0.02)
 
+    def test_grid_is_as_large_as_the_scene(self):
+        displays = {display["Class"]: display for display in self.manager["Displays"]}
+        grid = displays["rviz/Grid"]
+        self.assertTrue(grid["Enabled"])
+        for radius in (0.013, 2.0, 70.0):
+            show_in_rviz.fit_grid(grid, {"center": [3.3 * radius, 0, 0], "radius": radius})
+            length = grid["Cell Size"] * grid["Plane Cell Count"]
+            self.assertGreater(length, 2.2 * radius)
+            self.assertLess(length, 3.4 * radius)
+            self.assertTrue(6 <= grid["Plane Cell Count"] <= 30)
+            self.assertLess(abs(grid["Offset"]["X"] - 3.3 * radius), grid["Cell Size"])
+            lines = grid["Offset"]["X"] / grid["Cell Size"]
+            self.assertAlmostEqual(lines, round(lines), delta=1e-9)
+        self.assertTrue(show_in_rviz.has_ground("<robot name='r'><ground name='floor'/></robot>"))
+        self.assertFalse(show_in_rviz.has_ground("<robot name='r'><link name='a'/></robot>"))
+
     def test_draws_rigid_links_and_beams(self):
         displays = {display["Class"]: display for display in self.manager["Displays"]}
         self.assertEqual(displays["rviz/MarkerArray"]["Marker Topic"], "beam_markers")

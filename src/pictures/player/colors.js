@@ -26,9 +26,8 @@
     quantity("velocity", "Velocity", "m/s", null),
   ];
 
-  // Maps whose order the eye sees. The dark end of viridis is left out, since it would vanish on a dark background.
-  const ordered = ["#46327e", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
-  const diverging = ["#1f5fc4", "#5b8fdf", "#9ab9e6", "#bfc3c9", "#e9ad8c", "#dd7550", "#b93a26"];
+  // The writer of the page has the scales of colours, for amounts and for values of both signs.
+  const { amounts, signed } = P.settings.colors;
   const channels = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
   const LEVELS = 256;
 
@@ -41,7 +40,7 @@
     }
     return levels;
   }
-  const maps = [ordered, diverging].map((stops) => ({ stops, table: table(stops) }));
+  const maps = [amounts, signed].map((stops) => ({ stops, table: table(stops) }));
   const mapOf = ({ signed }) => maps[signed ? 1 : 0];
 
   // The level of a value on the scale that ends at `largest`.
@@ -57,6 +56,7 @@
     constructor() {
       this.amounts = Object.fromEntries(quantities.map((quantity) => [quantity.key, UNKNOWN]));
       this.force = this.moment = 0;
+      this.strainedAt = NaN;  // time of the largest strain
     }
     // `before`: the values of the instant before, or null; `step`: the time between them.
     note(run, values, before, step) {
@@ -81,6 +81,7 @@
       });
     }
     add(other) {
+      if (other.amounts.strain > this.amounts.strain) this.strainedAt = other.strainedAt;
       for (const key of Object.keys(this.amounts)) this.amounts[key] = Math.max(this.amounts[key], other.amounts[key]);
       this.force = Math.max(this.force, other.force);
       this.moment = Math.max(this.moment, other.moment);
@@ -95,8 +96,9 @@
     let values = new Float64Array(run.layout.count), before = new Float64Array(run.layout.count);
     for (let instant = first; instant <= last; ++instant) {
       run.sampleInto(values, instant, 0);
-      const isFirst = instant === first;
+      const isFirst = instant === first, strain = largest.amounts.strain;
       largest.note(run, values, isFirst ? null : before, isFirst ? 0 : store.time(instant) - store.time(instant - 1));
+      if (largest.amounts.strain > strain) largest.strainedAt = store.time(instant);
       [values, before] = [before, values];
     }
     return largest;

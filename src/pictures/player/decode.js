@@ -26,19 +26,26 @@
     };
   }
 
+  function readExtent(extent) {
+    const radius = Math.max(amount(extent.radius, 1), 1e-9);
+    return { center: numbers(extent.center, [0, 0, 0]), radius, half: numbers(extent.half, [radius, radius, radius]) };
+  }
+  function readMass(mass) {
+    return mass && typeof mass === "object" ? { at: numbers(mass.at, [0, 0, 0]), radius: amount(mass.radius, 0) } : null;
+  }
+
   // A copy of the picture in which every member has its type, so nothing else needs to check it.
   function readPicture(raw) {
     const [links, beams, columns, meshes] = [raw.links, raw.beams, raw.columns, raw.meshes].map(objects);
-    const extent = raw.extent || {};
     const frames = whole(raw.frames);
     const picture = {
       name: text(raw.name, "run"), title: text(raw.title), notes: list(raw.notes).map((note) => text(note)),
-      extent: { center: numbers(extent.center, [0, 0, 0]), radius: Math.max(amount(extent.radius, 1), 1e-9) },
+      extent: readExtent(raw.extent || {}),
       gravity: numbers(raw.gravity, [0, 0, 0]), frames,
       links: links.map((link) => ({
         name: text(link.name), parent: index(link.parent, links.length), beam: index(link.beam, beams.length),
         stick: list(link.stick).map((point) => numbers(point, [0, 0, 0])),
-        shapes: objects(link.shapes).map((shape) => readShape(shape, meshes.length)),
+        shapes: objects(link.shapes).map((shape) => readShape(shape, meshes.length)), mass: readMass(link.mass),
       })),
       meshes: meshes.map((mesh) => ({
         name: text(mesh.name), vertices: whole(mesh.vertices), triangles: whole(mesh.triangles),
@@ -56,8 +63,9 @@
       lines: objects(raw.lines).map((line) => ({
         kind: text(line.kind), name: text(line.name), points: whole(line.points),
       })),
-      grounds: objects(raw.grounds).map((ground) => ({
-        name: text(ground.name), normal: numbers(ground.normal, [0, 0, 1]), offset: amount(ground.offset, 0),
+      floors: objects(raw.floors).map((floor) => ({
+        pose: numbers(floor.pose, NO_MOTION), size: numbers(floor.size, [0, 0]), cell: amount(floor.cell, 0),
+        isGround: floor.ground === true,
       })),
       arrows: objects(raw.arrows).map((arrow) => ({
         kind: text(arrow.kind), count: whole(arrow.count),

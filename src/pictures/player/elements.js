@@ -23,6 +23,8 @@
     return svg;
   }
   const setIcon = (button, name) => button.querySelector("use").setAttribute("href", `#i-${name}`);
+  // The parts of a name, which may be broken behind its separators.
+  const breakable = (name) => name.split(/(?<=[/_:.\-])/).flatMap((part, k) => (k ? [make("wbr"), part] : [part]));
   const setText = (element, text) => { if (element.textContent !== text) element.textContent = text; };
   const byId = (id) => document.getElementById(id);
 
@@ -46,5 +48,10 @@
     }
   }
 
-  Object.assign(P, { make, icon, setIcon, setText, byId, csv, copy });
+  // What all runs of the page share.
+  const settingsElement = document.querySelector("script.flexarm-settings");
+  const settings = { colors: { amounts: ["#444444", "#eeeeee"], signed: ["#444444", "#eeeeee"] }, first_time: null,
+    ...(settingsElement ? JSON.parse(settingsElement.textContent) : {}) };
+
+  Object.assign(P, { settings, make, breakable, icon, setIcon, setText, byId, csv, copy });
 })(window.Player = window.Player || {});

@@ -97,7 +97,7 @@
         context.fillText(text, cell.x + gap, cell.y + cell.height - 0.7 * size - line * (lines.length - k)));
     }
     if (!legend) return;
-    const tall = Math.round(0.3 * height), wide = size, right = width - gap - 5 * size, top = height - gap - tall;
+    const tall = Math.round(0.2 * height), wide = size, right = width - gap - 5 * size, top = height - gap - tall;
     const gradient = context.createLinearGradient(0, top + tall, 0, top);
     legend.stops.forEach((stop, k) => gradient.addColorStop(k / (legend.stops.length - 1), stop));
     context.fillStyle = gradient;

@@ -4,7 +4,7 @@
 
   // Lengths per radius of the scene.
   const LONGEST_ARROW = 0.35, LARGEST_CIRCLE = 0.15, SHAFT = 0.006, HEAD = 0.018, HEAD_LENGTH = 0.06;
-  const AXIS_LENGTH = 0.2, AXIS_RADIUS = 0.004, LINE = 0.005, PROBE = 0.014, WORLD_AXES = 0.2, GROUND = 2.4;
+  const AXIS_LENGTH = 0.2, AXIS_RADIUS = 0.004, LINE = 0.005, PROBE = 0.014, WORLD_AXES = 0.2;
   const SHORTEST = 0.02;   // per length of the longest arrow; shorter ones are not drawn
   const SMALLEST = 1e-6;   // smaller forces and moments are round-off in any scene [N, N m]
   const TURN = 1.6 * Math.PI;
@@ -177,14 +177,15 @@
 
   // ---------------------------------------------------------------- things that stand still
 
-  function flatGrid(size, cell, normal, middle, material) {
-    const cells = Math.max(2, Math.round(size / cell));
-    const grid = new THREE.GridHelper(cells * cell, cells);
-    grid.material.dispose();
-    grid.material = material;
-    grid.quaternion.setFromUnitVectors(Y, normal);
-    grid.position.copy(middle);
-    return grid;
+  // The grid lines of a floor, around its centre.
+  function flatGrid({ size: [length, width], cell }, material) {
+    const points = [], x = length / 2, y = width / 2;
+    const columns = cell > 0 ? Math.round(length / cell) : 0, rows = cell > 0 ? Math.round(width / cell) : 0;
+    for (let k = 0; k <= columns; ++k) points.push(k * cell - x, -y, 0, k * cell - x, y, 0);
+    for (let k = 0; k <= rows; ++k) points.push(-x, k * cell - y, 0, x, k * cell - y, 0);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+    return new THREE.LineSegments(geometry, material);
   }
   function jointAxis(joint, radius) {
     const geometry =
@@ -195,17 +196,16 @@
   }
 
   class Marks {
-    // `arm`: whose link frames carry the joints' axes; `up`: a unit vector.
-    constructor(run, arm, up) {
+    // `arm`: whose link frames carry the joints' axes.
+    constructor(run, arm) {
       const { picture, layout } = run, { radius } = picture.extent;
       this.run = run;
       this.root = new THREE.Group();
-      this.cell = P.niceStep(2 * radius, 10);
       this.gridMaterial = new THREE.LineBasicMaterial({ transparent: true, depthWrite: false });
       this.groundMaterial = new THREE.MeshBasicMaterial({
         transparent: true, opacity: 0.35, side: THREE.DoubleSide, depthWrite: false,
       });
-      this.addGrounds(picture, up);
+      this.addFloors(picture);
       this.world = this.root.add(new THREE.AxesHelper(WORLD_AXES * radius)).children.slice(-1)[0];
       this.axes = picture.joints.filter((joint) => joint.axis && joint.link >= 0).map((joint) => {
         const axis = jointAxis(joint, radius);
@@ -231,23 +231,14 @@
         return { mesh, trail, link: probe.link, at: layout.probes[p] };
       });
     }
-    addGrounds(picture, up) {
-      const { radius } = picture.extent, center = new THREE.Vector3(...picture.extent.center);
-      const size = GROUND * radius;
+    addFloors(picture) {
       this.grid = new THREE.Group();
-      for (const ground of picture.grounds) {
-        const normal = new THREE.Vector3(...ground.normal), length = normal.length() || 1;
-        normal.divideScalar(length);
-        const middle = center.clone().addScaledVector(normal, ground.offset / length - normal.dot(center));
-        const plane = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), this.groundMaterial);
-        plane.quaternion.setFromUnitVectors(Z, normal);
-        plane.position.copy(middle);
-        this.grid.add(plane, flatGrid(size, this.cell, normal, middle, this.gridMaterial));
-      }
-      if (!picture.grounds.length) {
-        const middle = center.addScaledVector(up, -up.dot(center));
-        middle.divideScalar(this.cell).round().multiplyScalar(this.cell);  // lines go through the world's origin
-        this.grid.add(flatGrid(size, this.cell, up, middle, this.gridMaterial));
+      for (const floor of picture.floors) {
+        const frame = new THREE.Group();
+        frame.add(flatGrid(floor, this.gridMaterial));
+        if (floor.isGround) frame.add(new THREE.Mesh(new THREE.PlaneBufferGeometry(...floor.size), this.groundMaterial));
+        P.setPose(frame, floor.pose, 0);
+        this.grid.add(frame);
       }
       this.root.add(this.grid);
     }

@@ -60,7 +60,7 @@
         element.setAttribute("aria-expanded", "true");
       }
       element.append(twist, P.icon(isJoint ? "joint" : links[link].beam >= 0 ? "beam" : "link"),
-        P.make("span", { class: "name", dir: "auto" }, name));
+        P.make("span", { class: "name", dir: "auto" }, ...P.breakable(name)));
       const row = { element, run, link, joint, above, name: name.toLowerCase() };
       if (!isJoint) {
         row.eye = P.make("button",

@@ -188,6 +188,7 @@
     const title = first ? first.label : "flexarm";
     document.title = `${title} – flexarm`;
     P.setText(byId("title"), runs.length > 1 ? `${title} and ${runs.length - 1} more` : title);
+    byId("title").title = title;
     if (stage) {
       stage.largest = new P.Largest();
       stage.setRuns(runs);
@@ -200,9 +201,17 @@
     panel.setRuns(runs);
     lastRange = null;
     clock.setRuns(runs);
+    if (clock.clip < 0 && !clock.isLive) clock.seek(firstTime(), true);
     plots.setRuns(runs);
     if (stage) measure();  // panels may have another size now
     redraw();
+  }
+  // What the page shows when it opens: what its writer wants, or the instant of the largest strain.
+  function firstTime() {
+    const { first_time: wanted } = P.settings;
+    if (Number.isFinite(wanted)) return wanted;
+    const { amounts, strainedAt } = stage ? stage.largest : new P.Largest();
+    return amounts.strain > P.quantities[0].least ? strainedAt : clock.start;
   }
   function measure() {
     const { clientWidth, clientHeight } = byId("picture");
@@ -318,6 +327,8 @@
       };
     },
     set camera(camera) { if (stage) stage.setCamera(camera); },
+    // Shows all that moves, from this direction.
+    lookFrom([x, y, z]) { if (stage) stage.fit(new THREE.Vector3(x, y, z)); },
     capture,
     errors,
   };

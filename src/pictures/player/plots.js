@@ -54,7 +54,7 @@
         box.checked = this.chosen.includes(name);
         box.onchange = () => this.choose(name, box.checked);
         return P.make("label", { class: "option", title: name }, box,
-          P.make("span", { class: "name", dir: "auto" }, name), P.make("span", { class: "unit" }, unitText(unit)));
+          P.make("span", { class: "name", dir: "auto" }, ...P.breakable(name)), P.make("span", { class: "unit" }, unitText(unit)));
       });
       const rest = found.length - options.length;
       const more = rest > 0 ? `… and ${rest} more. Type to find them.` : "";
@@ -101,7 +101,7 @@
         remove.onclick = () => this.choose(curve.name, false);
         const name = this.runs.length > 1 ? `${curve.name} · ${curve.run.label}` : curve.name;
         curve.element = P.make("div", { class: "curve" }, line,
-          P.make("span", { class: "name", dir: "auto", title: name }, name), curve.value, remove);
+          P.make("span", { class: "name", dir: "auto", title: name }, ...P.breakable(name)), curve.value, remove);
       }
       const legend = P.make("div", { class: "curves" }, ...curves.map((curve) => curve.element));
       const plot = { unit, curves, canvas, cursor, area, element: P.make("div", { class: "plot" }, area, legend) };

@@ -4,7 +4,7 @@
 
   const VIEW_ANGLE = 35;                     // vertical [degrees]
   const START_DIRECTION = [0.55, -0.75, 0.36];  // from the scene to the camera, if up is z
-  const FIT = 1.04;
+  const FIT = 1.04, FAR = 100;  // per radius of what is shown
   const ACROSS = 1.2;  // the best ratio of a run's width to its height
   const NEAR = 9;      // so far from the pointer a joint is found [CSS pixels]
 
@@ -41,7 +41,7 @@
       this.setShown(this.shown);
     }
     makeView(run) {
-      const scene = new THREE.Scene(), arm = new P.Arm(run), marks = new P.Marks(run, arm, this.up);
+      const scene = new THREE.Scene(), arm = new P.Arm(run), marks = new P.Marks(run, arm);
       const sky = new THREE.HemisphereLight(0xffffff, 0x9a9a9a, 0.62), lamp = new THREE.DirectionalLight(0xffffff, 0.5);
       sky.position.copy(this.up);
       scene.add(sky, lamp, lamp.target, arm.root, marks.root);
@@ -67,7 +67,7 @@
       this.controls.addEventListener("change", this.redraw);
       this.controls.addEventListener("start", () => { this.isFitted = false; });
     }
-    // Shows all that the scene can reach, from the direction where the camera is, or from a new one.
+    // Shows all that moves, from the direction of the start, or from another one.
     fit(direction = null) {
       const way = direction || this.startDirection();
       this.fitDirection = way.clone().normalize();
@@ -76,11 +76,24 @@
       this.redraw();
     }
     refit() {
-      const vertical = VIEW_ANGLE * Math.PI / 360, horizontal = Math.atan(Math.tan(vertical) * this.aspect);
-      const distance = FIT * this.extent.radius / Math.sin(Math.min(vertical, horizontal));
       this.controls.target.copy(this.extent.center);
-      this.camera.position.copy(this.extent.center).addScaledVector(this.fitDirection, distance);
+      this.camera.position.copy(this.extent.center).add(this.fitDirection);
+      this.controls.update();  // turns the camera
+      this.camera.position.copy(this.extent.center).addScaledVector(this.fitDirection, this.fitDistance());
       this.controls.update();
+    }
+    // From where the camera, which looks at the centre, sees the whole sphere or the whole box around what moves.
+    fitDistance() {
+      const { radius, half } = this.extent, vertical = Math.tan(this.camera.fov * Math.PI / 360);
+      const slopes = [vertical * this.aspect, vertical], inverse = this.camera.quaternion.clone().conjugate();
+      const bySphere = radius / Math.sin(Math.atan(Math.min(...slopes)));
+      let byBox = 0;
+      for (let k = 0; k < 8; ++k) {
+        corner.set(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
+        corner.applyQuaternion(inverse);
+        byBox = Math.max(byBox, corner.z + Math.abs(corner.x) / slopes[0], corner.z + Math.abs(corner.y) / slopes[1]);
+      }
+      return FIT * Math.min(bySphere, byBox);
     }
     startDirection() {
       const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.up);
@@ -117,7 +130,7 @@
       camera.aspect = this.aspect;
       const distance = camera.position.distanceTo(center);
       camera.near = Math.max(distance - 4 * radius, 0.002 * (radius + distance));
-      camera.far = distance + 6 * radius;
+      camera.far = distance + FAR * radius;
       camera.updateProjectionMatrix();
       camera.lookAt(this.controls.target);
       camera.updateMatrixWorld();
@@ -281,20 +294,22 @@
       return { run: r, link: part.link, joint: -1, beam: part.beam, section };
     }
   }
-  const moved = new THREE.Vector3(), pointer = new THREE.Vector2();
+  const moved = new THREE.Vector3(), corner = new THREE.Vector3(), pointer = new THREE.Vector2();
 
   function dispose({ geometry, material }) {
     if (geometry) geometry.dispose();
     if (material) material.dispose();
   }
   function commonExtent(runs) {
-    const center = new THREE.Vector3(), extents = runs.map((run) => run.picture.extent);
-    for (const extent of extents) center.add(new THREE.Vector3(...extent.center).divideScalar(runs.length));
-    let radius = 0;
-    for (const extent of extents) {
-      radius = Math.max(radius, center.distanceTo(new THREE.Vector3(...extent.center)) + extent.radius);
-    }
-    return { center, radius: radius || 1 };
+    const box = new THREE.Box3(), extents = runs.map(({ picture }) => picture.extent).map(({ center, half, radius }) =>
+      ({ center: new THREE.Vector3(...center), half: new THREE.Vector3(...half), radius }));
+    for (const { center, half } of extents)
+      box.expandByPoint(center.clone().add(half)).expandByPoint(center.clone().sub(half));
+    const center = new THREE.Vector3(), half = new THREE.Vector3(1, 1, 1);
+    if (!extents.length) return { center, half, radius: 1 };
+    box.getCenter(center);
+    box.getSize(half).multiplyScalar(0.5);
+    return { center, half, radius: Math.max(...extents.map((extent) => center.distanceTo(extent.center) + extent.radius)) };
   }
 
   Object.assign(P, { Stage });

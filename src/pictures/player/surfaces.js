@@ -55,7 +55,7 @@
     return geometry;
   }
 
-  // Lines to the places of a link's children, where it has no shapes.
+  // Lines to the places of a link's children and to its centre of mass, where it has no shapes.
   function addStick(points, radius, surface) {
     const along = new THREE.Vector3(), turn = new THREE.Quaternion(), up = new THREE.Vector3(0, 1, 0);
     for (const point of points) {
@@ -82,6 +82,10 @@
     if (!byAlpha.size && link.beam < 0) {
       const surface = new Surface();
       addStick(link.stick, 0.008 * run.picture.extent.radius, surface);
+      if (link.mass) {
+        const ball = new THREE.SphereBufferGeometry(link.mass.radius, 32, 20);
+        surface.add(ball, [...link.mass.at, 0, 0, 0, 1], LINK_COLOR);
+      }
       if (surface.count) byAlpha.set(1, surface);
     }
     return [...byAlpha.values()];

@@ -20,6 +20,7 @@ def parser():
     words.add_argument("--scene", help="of all runs; without it each run names its own")
     words.add_argument("--output")
     words.add_argument("--rate", type=float)
+    words.add_argument("--at", type=float)
     words.add_argument("--open", action="store_true")
     add_scene_options(words)
     return words
@@ -81,7 +82,7 @@ def page_with(arguments):
     notes = [note for picture, _ in encoded for note in json.loads(picture)["notes"]]
     for note in dict.fromkeys(notes):
         print("flexarm: warning: %s" % note, file=sys.stderr)
-    return page_of(encoded)
+    return page_of(encoded, at=arguments.at)
 
 
 def main(words):

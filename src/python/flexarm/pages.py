@@ -36,13 +36,15 @@ class Page:
             html.escape(self.text), self.height)
 
 
-def show(*runs: Shown, scene: typing.Optional[Scene] = None, rate: float = 60.0, height: int = 640) -> Page:
+def show(*runs: Shown, scene: typing.Optional[Scene] = None, rate: float = 60.0, height: int = 640,
+         at: typing.Optional[float] = None) -> Page:
     """A page that plays runs side by side.
 
     runs: each is a Recording; or a Simulation, whose present state is shown; or a Run (results of `scene`).
     scene: of the runs that are a Run, as read_scene() gives it, or the path of its file.
     rate: instants of a Run that are shown per second [1/s], at most.
     height: in a notebook [pixels].
+    at: time that the page shows first [s]; by default that of the largest strain.
     Raises ValueError if a Run needs a scene and there is none.
     """
     encoded = []
@@ -57,7 +59,7 @@ def show(*runs: Shown, scene: typing.Optional[Scene] = None, rate: float = 60.0,
             encoded.append(recording._encode())
         else:
             encoded.append(run._encode())
-    return page_of(encoded, height)
+    return page_of(encoded, height, at)
 
 
 def encode(run: Run, scene: Scene, rate: float, notes: typing.Sequence[str] = ()) -> typing.Tuple[str, bytes]:
@@ -66,5 +68,6 @@ def encode(run: Run, scene: Scene, rate: float, notes: typing.Sequence[str] = ()
     return _flexarm._encode_rows(_flexarm.Simulation(scene), columns, run.rows, run.name, rate, list(notes))
 
 
-def page_of(encoded: typing.Sequence[typing.Tuple[str, bytes]], height: int = 640) -> Page:
-    return Page(_flexarm._page(list(encoded)), height)
+def page_of(encoded: typing.Sequence[typing.Tuple[str, bytes]], height: int = 640,
+            at: typing.Optional[float] = None) -> Page:
+    return Page(_flexarm._page(list(encoded), at), height)

@@ -47,10 +47,7 @@ ARRANGE = """const {dark, color, show, hide, view, camera, target, zoom} = argum
       flexarm.shown = [...flexarm.shown, ...show].filter((thing) => !hide.includes(thing));
     const now = flexarm.camera;
     if (!now) return;
-    if (view) {
-      const away = Math.hypot(...now.position.map((x, k) => x - now.target[k])) / Math.hypot(...view);
-      flexarm.camera = {target: now.target, position: now.target.map((x, k) => x + away * view[k])};
-    }
+    if (view) flexarm.lookFrom(view);
     if (camera || target) flexarm.camera = {position: camera || now.position, target: target || now.target};
     if (zoom !== 1)
       flexarm.camera = {fov: 360 / Math.PI * Math.atan(Math.tan(now.fov * Math.PI / 360) / zoom)};"""
