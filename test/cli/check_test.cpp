@@ -244,6 +244,69 @@ TEST(Check, NamesLoopsOfBeamsAtDeadPoints) {
   EXPECT_EQ(open.output.find("dead point"), std::string::npos);
 }
 
+namespace {
+
+/// A hinge with a body, whose inertia about the axis is 0.11 kg m^2; `more` has its damping, and elements of the robot.
+std::string spun_arm(const std::string& dynamics, const std::string& more) {
+  return scene_file(R"(<robot name="r"> <link name="world"/> <link name="arm"> <inertial> <origin xyz="0.1 0 0"/>
+      <mass value="1"/> <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
+      <joint name="hinge" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> )" +
+                    dynamics + "</joint> " + more + "</robot>");
+}
+
+}  // namespace
+
+TEST(Check, WarnsOfAStepThatIsLongForTheFirstMode) {
+  const auto with_step = [](const std::string& step) {
+    return shell("flexarm check " +
+                 spun_arm("", R"(<spring joint="hinge" stiffness="4000"/> <simulation> <gravity xyz="0 0 0"/>
+        <integrator scheme="em" step=")" +
+                                  step + R"("/> </simulation>)"))
+        .errors;
+  };
+  // Its period is 2 pi sqrt(0.11 / 4000).
+  expect_contains(with_step("0.004"),
+                  "warning: the step, 0.004 s, is long for the first mode, whose period is 0.0329 s: take ten steps");
+  EXPECT_EQ(with_step("0.003"), "");
+}
+
+TEST(Check, AndSimulateWarnOfAnExplicitStepThatMakesMotionsGrow) {
+  const std::string scene =
+      spun_arm(R"(<dynamics damping="2000"/>)", R"(<simulation> <integrator scheme="rk4"/> </simulation>)");
+  const std::string told =  // 2.785 * 0.11 / 2000
+      "warning: the step, 0.001 s, is too long for the explicit scheme rk4, so that motions grow: damping of joint "
+      "coordinate 'hinge' needs steps below 0.00015 s";
+  expect_contains(shell("flexarm check " + scene).errors, told);
+  const Outcome run = shell("flexarm simulate " + scene + " --until 1 --checkpoint " + temporary("state"));
+  EXPECT_EQ(run.status, 1);
+  expect_contains(run.errors, told);
+  expect_contains(run.errors, "the step is too long for an explicit scheme, so that the motion grows");
+  const Outcome good = shell("flexarm simulate " + scene + " --until 0.01 --step 0.0001");
+  EXPECT_EQ(good.status, 0);
+  EXPECT_EQ(good.errors.find("too long"), std::string::npos) << good.errors;
+}
+
+TEST(Check, WarnsOfAJointFarBeyondItsBeam) {
+  const auto errors = [](const std::string& x) {
+    return shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+        <link name="rod"> <beam elements="2"> <centerline> <line to="1 0 0"/> </centerline> <circle radius="0.01"/>
+          <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
+        <link name="load"> <inertial> <mass value="1"/> <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>
+          </inertial> </link>
+        <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint>
+        <joint name="flange" type="fixed"> <parent link="rod"/> <child link="load"/> <origin xyz=")" +
+                                               x + R"( 0.2 0"/> </joint> </robot>)"))
+        .errors;
+  };
+  expect_contains(
+      errors("1.3"),
+      "warning: <joint> 'flange': its place on link 'rod' is beyond the end of the line, which is 1 m long: a "
+      "rigid offset connects them, got '0.3' m");
+  expect_contains(errors("-2"), "got '2' m");
+  EXPECT_EQ(errors("1.2"), "");
+  EXPECT_EQ(errors("0.5"), "");
+}
+
 TEST(Check, TakesEveryExample) {
   for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples")))
     EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();

@@ -266,4 +266,16 @@ TEST(Simulate, InputIsNotOverwritten) {
   EXPECT_EQ(read_file(scene), kFailingScene);
 }
 
+TEST(Files, AnEndingThatStandsForNothingIsTold) {
+  const auto errors = [](const std::string& name) {
+    return shell("flexarm simulate " + example("rigid_double_pendulum") + " --until 0.01 --quiet --output " +
+                 temporary(name))
+        .errors;
+  };
+  expect_contains(errors("run.json"),
+                  "gets CSV, as its ending '.json' stands for nothing else: there are .csv, .h5 (HDF5)");
+  EXPECT_EQ(errors("run.csv"), "");
+  EXPECT_EQ(errors("run"), "");
+}
+
 }  // namespace flexarm::cli

@@ -80,6 +80,21 @@ TEST(Start, WithoutEquilibriumNamesTheJoint) {
   EXPECT_TRUE(contains(outcome.errors, "nothing holds joint 'root'")) << outcome.errors;
 }
 
+TEST(Start, WhatFallsWithEverythingIsNamedFirst) {
+  const auto body = [](const std::string& name, const std::string& centre) {
+    return "<link name=\"" + name + "\"> <inertial> <origin xyz=\"" + centre + R"("/> <mass value="1"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>)";
+  };
+  const Outcome outcome =
+      shell("flexarm static " + scene_file("<robot name=\"stone\">" + body("stone", "0 0 0") + body("flag", "0.1 0 0") +
+                                           R"(<joint name="pole" type="continuous">
+      <parent link="stone"/> <child link="flag"/> <axis xyz="0 1 0"/> </joint>
+      <simulation> <root type="floating"/> </simulation> </robot>)"));
+  EXPECT_TRUE(contains(outcome.errors, "nothing holds joints 'root', ") ||
+              contains(outcome.errors, "nothing holds joint 'root' "))
+      << outcome.errors;
+}
+
 TEST(Start, AFloatingRootFalls) {
   const std::string path = scene_file("<robot name=\"stone\">" + link("stone") +
                                       "<simulation> <root type=\"floating\"/> </simulation> </robot>");
