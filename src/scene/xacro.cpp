@@ -87,10 +87,14 @@ bool needs_xacro(const tinyxml2::XMLElement& element, const Definitions& defined
 }
 
 void warn_of_definitions(const XmlElement& robot, const Definitions& defined) {
-  const std::string others = defined.count > 1 ? fmt::format(" (as have {} more definitions)", defined.count - 1) : "";
-  robot.findings().warning(defined.first->GetLineNum(), fmt::format("<{}> of robot", defined.first->Name()),
-                           fmt::format("is for xacro, and has no effect{}: nothing in this file uses it", others),
-                           quoted(defined.first->Attribute("name") ? defined.first->Attribute("name") : ""));
+  const char* name = defined.first->Attribute("name");
+  robot.findings().warning(
+      defined.first->GetLineNum(), fmt::format("<{}> of robot", defined.first->Name()),
+      defined.count == 1
+          ? "is for xacro, and has no effect: nothing in this file uses it"
+          : fmt::format("this and {} more are for xacro, and have no effect: nothing in this file uses them",
+                        defined.count - 1),
+      quoted(name ? name : ""));
 }
 
 bool says_it_is_expanded(const tinyxml2::XMLDocument& document) {

@@ -60,7 +60,8 @@ TEST(Xacro, DefinitionsThatNothingUsesAreAWarning) {
       R"x(<xacro:if value="${width}"/> <xacro:hip side="${side}"/> </xacro:macro> )x"
       R"x(<xacro:property name="width" value=".2"/> <xacro:arg name="side" default="left"/>)x");
   expect_warning(many, 2,
-                 "<xacro:macro> of robot: is for xacro, and has no effect (as have 2 more definitions): nothing");
+                 "<xacro:macro> of robot: this and 2 more are for xacro, and have no effect: nothing in this file uses "
+                 "them, got 'leg'");
   EXPECT_EQ(many.diagnostics.size(), 1u) << to_text(many.diagnostics);
   EXPECT_EQ(many.scene->links.size(), read(kGoodScene).scene->links.size());
 }
