@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "analysis/linearised_motion.h"
-#include "math/dense_eigenpairs.h"
 
 namespace flexarm {
 namespace {
@@ -19,31 +18,28 @@ constexpr double kSmallestRadius = 1e-14;
 /// shrinks, above kGood it grows.
 constexpr double kTaken = 1e-3, kPoor = 0.25, kGood = 0.7;
 constexpr double kShrinks = 0.25, kGrows = 2;
+/// Bound of the error of the actual fall, relative to the reference curvature times the fifth power of the step.
+constexpr double kErrorOfFall = 1e-2;
 constexpr int kMostSteps = 200;
-/// Number of bisections in the search for the shift of the curvature.
-constexpr int kBisections = 100;
-/// A step into a stop takes at most the part kPartOfGive of the depth by which the stop gives way. A step out of a stop
-/// goes kBeyond beyond it.
-constexpr double kPartOfGive = 0.1, kBeyond = 1e-12;
+/// A configuration at rest that is no minimum is left by steps of kFirstRadius, or shorter ones down to this.
+constexpr double kNearestWayOut = 1e-6;
+/// Negative curvature below this, relative to the reference curvature, counts as none if no step along it leads down.
+constexpr double kSlight = 1e-9;
+/// Most iterations by which stiff motions come to rest.
+constexpr int kMostSinks = 20;
+/// Most sets of coordinates that may leave their stops together.
+constexpr std::size_t kMostSets = 64;
+/// A coordinate that has moved this far moves without limit [rad, or in units of the length scale].
+constexpr double kFar = 30;
 /// Steps of this length or less may lead into a stop. They are accepted even if the force grows, as long as the
 /// potential changes by no more than round-off.
 constexpr double kTiny = 1e-10;
 /// Share of a coordinate in a motion above which it takes part.
 constexpr double kTakesPart = 1e-3;
-/// Relative to the curvature that weight and loads make: for larger curvatures round-off does not matter.
-constexpr double kSoft = 1e-2;
 /// The same: for smaller curvatures Newton's method may fail.
 constexpr double kFirm = 1e-3;
 /// If a step of Newton's method is not shorter than the last one by this factor, it is round-off.
 constexpr double kShorter = 0.5;
-
-Eigen::MatrixXd columns_and_rows(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& indices) {
-  const auto size = static_cast<Eigen::Index>(indices.size());
-  Eigen::MatrixXd part(size, size);
-  for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index k = 0; k < size; ++k) part(i, k) = matrix(indices[i], indices[k]);
-  return part;
-}
 
 }  // namespace
 
@@ -54,127 +50,135 @@ bool Descent::begin(const State& state) {
   return potentials_.begin(state);
 }
 
-/// Modes of the coordinates that are not fixed, after the fixed ones have moved by `ways`.
-Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>& is_fixed,
-                              const Eigen::VectorXd& ways) {
-  std::vector<Eigen::Index> open;
-  for (std::size_t i = 0; i < is_fixed.size(); ++i)
-    if (!is_fixed[i]) open.push_back(static_cast<Eigen::Index>(i));
-  const auto size = static_cast<Eigen::Index>(open.size());
-  const Eigen::VectorXd force = at.force + at.curvature * ways;
-  Eigen::MatrixXd curvature = columns_and_rows(at.curvature, open);
-  const Eigen::VectorXd scale = curvature.diagonal().unaryExpr(
-      [&](double value) { return 1 / std::sqrt(std::max(1.0, std::abs(value) / potentials_.reference())); });
-  curvature = (scale.asDiagonal() * curvature * scale.asDiagonal()).eval();
-  const SymmetricEigenpairs pairs = symmetric_eigenpairs(curvature);
-  Modes modes;
-  modes.curvature = pairs.values;
-  modes.motions = Eigen::MatrixXd::Zero(at.force.size(), size);
-  for (Eigen::Index i = 0; i < size; ++i) modes.motions.row(open[i]) = scale[i] * pairs.vectors.row(i);
-  modes.force = modes.motions.transpose() * force;
-  // The round-off of beams matters for soft motions only.
-  const auto soft = std::count_if(modes.curvature.data(), modes.curvature.data() + size,
-                                  [&](double curvature) { return curvature < kSoft * potentials_.reference(); });
-  modes.round_off.resize(size);
-  modes.round_off.head(soft) = potentials_.round_off(at, modes.motions.leftCols(soft));
-  for (Eigen::Index i = soft; i < size; ++i) modes.round_off[i] = potentials_.round_off_of_loads(modes.motions.col(i));
-  return modes;
-}
-
-/// Minimum of the quadratic model within the radius, along the modes that are not flat.
-Eigen::VectorXd Descent::step_in(const Modes& modes, double radius) {
-  const Eigen::Index size = modes.curvature.size();
-  std::vector<Eigen::Index> open;
-  Eigen::Index lowest = -1;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    if (modes.is_flat(i)) continue;
-    open.push_back(i);
-    if (lowest < 0 || modes.curvature[i] < modes.curvature[lowest]) lowest = i;
-  }
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(size);
-  if (lowest < 0) return step;
-  const auto shifted = [&](double shift) {
-    for (const Eigen::Index i : open) {
-      const double curvature = modes.curvature[i] + shift;
-      step[i] = modes.force[i] == 0 ? 0 : -modes.force[i] / std::max(curvature, std::numeric_limits<double>::min());
-    }
-    return step.norm();
+/// Makes the step if the potential falls. `share`: of its promise.
+bool Descent::take(JointPotential& at, const Step& step, double& share, StepResult& result) {
+  share = -1;
+  if (!potentials_.move(at, step.ways, next_.state, result) || !potentials_.look(next_)) return false;
+  // The fall of the potential along the actual motion: that of stops by their law, the rest by Hermite's rule.
+  const Eigen::VectorXd ways = potentials_.ways(at.state, next_.state);
+  const auto work = [&](const JointPotential& there) { return ways.dot(there.force - there.stop_force); };
+  const auto bend = [&](const JointPotential& there) {
+    return ways.dot(there.curvature * ways) - ways.dot(there.stop_curvature.cwiseProduct(ways));
   };
-  const double least = std::max(0.0, -modes.curvature[lowest]);
-  const bool is_convex = modes.curvature[lowest] > modes.round_off[lowest];
-  if (is_convex && shifted(0) <= radius) return step;
-  double low = least, high = least + modes.force.norm() / radius + std::numeric_limits<double>::min();
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (shifted(middle) > radius ? low : high) = middle;
-  }
-  const double length = shifted(high);
-  // There is no force along the lowest curvature, which is negative: go to one side.
-  if (modes.curvature[lowest] < -modes.round_off[lowest] && length < radius)
-    step[lowest] += (modes.force[lowest] > 0 ? -1 : 1) * std::sqrt(radius * radius - length * length);
-  return step;
+  const double fall =
+      at.stop_energy - next_.stop_energy - 0.5 * (work(at) + work(next_)) - (bend(at) - bend(next_)) / 12;
+  const double noise = potentials_.round_off_of_loads(ways);
+  if (step.promise > 0) share = fall / step.promise;
+  // At the corner of a stop, the quadratic model knows one side only.
+  const bool is_tiny = ways.norm() <= kTiny;
+  const bool is_taken =
+      share > kTaken || (std::abs(fall) <= noise && (is_tiny || next_.force.norm() < at.force.norm()));
+  if (is_taken) std::swap(at, next_);
+  return is_taken;
 }
 
-/// Ends the motion of the coordinate that crosses a bound first, at this bound. Returns false if none does.
-bool Descent::stop_at_bound(const JointPotential& at, std::vector<bool>& is_fixed, Eigen::VectorXd& ways) const {
-  double earliest = 1;
-  const JointPotentials::Bound* met = nullptr;
-  for (const JointPotentials::Bound& bound : potentials_.bounds()) {
-    const auto i = static_cast<Eigen::Index>(bound.axis);
-    if (is_fixed[bound.axis] || ways[i] == 0) continue;
-    const double begin = potentials_.position(at.state, bound.axis);
-    const double way = ways[i] / potentials_.axes()[bound.axis].scale;
-    const double depth = bound.inward * (begin - bound.place), deeper = bound.inward * way;
-    const bool crosses = depth > 0 ? depth + deeper < 0 : depth + deeper > 0;
-    if (!crosses || (depth > 0 && -depth / deeper > 1)) continue;
-    const double part = std::max(0.0, -depth / deeper);
-    if (part < earliest) earliest = part, met = &bound;
-  }
-  if (!met) return false;
-  const auto i = static_cast<Eigen::Index>(met->axis);
-  const double scale = potentials_.axes()[met->axis].scale;
-  const double depth = met->inward * (potentials_.position(at.state, met->axis) - met->place);
-  double wanted = -kBeyond;
-  if (depth <= 0) {
-    const double push = std::abs(at.force[i]) * scale / std::max(met->stiffness, std::numeric_limits<double>::min());
-    wanted = std::clamp(push, kBeyond, std::min(kPartOfGive * met->give, kFirstRadius / scale));
-  }
-  const double way = scale * met->inward * (wanted - depth);
-  // Not farther than without the bound.
-  ways[i] = std::abs(way) < std::abs(ways[i]) ? way : ways[i];
-  is_fixed[met->axis] = true;
+/// Along a soft motion that is curved, as in a wrist that can turn almost freely with the arm before it, straight steps
+/// climb up the stiff walls of the valley. So if only soft motions are not at rest: steps along them, after which the
+/// stiff motions come to rest. With no force in stiff motions at either end, the potential falls by the work of the
+/// mean force. Returns false if no such step is found.
+bool Descent::follow_valley(JointPotential& at, TouchedStops& stops, StepResult& result) {
+  const Modes before = modes(at, stops);
+  for (Eigen::Index i = 0; i < before.curvature.size(); ++i)
+    if (is_stiff(before, i) && before.way(i) > tolerance_) return false;
+  for (double radius = kFirstRadius; radius > kNearestWayOut; radius *= kShrinks)
+    if (take_and_sink(at, best_step(at, stops, radius), result)) return true;
+  return false;
+}
+
+/// Makes the step, and lets stiff motions come to rest behind it, if the potential falls.
+bool Descent::take_and_sink(JointPotential& at, const Step& step, StepResult& result) {
+  if (!potentials_.move(at, step.ways, next_.state, result) || !potentials_.look(next_) || !sink(result)) return false;
+  const Eigen::VectorXd ways = potentials_.ways(at.state, next_.state);
+  const double noise = potentials_.round_off_of_loads(ways);
+  if (ways.norm() > 2 * step.ways.norm() || !(ways.dot(at.force) < noise)) return false;
+  if (!(ways.dot(at.force + next_.force) < -noise)) return false;
+  std::swap(at, next_);
   return true;
 }
 
-Descent::Step Descent::step_from(const JointPotential& at, double radius) {
-  std::vector<bool> is_fixed(at.force.size(), false);
-  Eigen::VectorXd fixed = Eigen::VectorXd::Zero(at.force.size());
-  Step step;
-  for (;;) {
-    const Modes modes = this->modes(at, is_fixed, fixed);
-    const Eigen::VectorXd along = step_in(modes, radius);
-    step.ways = fixed + modes.motions * along;
-    step.length = along.norm();
-    std::vector<bool> now_fixed = is_fixed;
-    Eigen::VectorXd ways = step.ways;
-    if (!stop_at_bound(at, now_fixed, ways)) break;
-    for (std::size_t i = 0; i < is_fixed.size(); ++i)
-      if (now_fixed[i] && !is_fixed[i]) fixed[static_cast<Eigen::Index>(i)] = ways[static_cast<Eigen::Index>(i)];
-    is_fixed = now_fixed;
-    if (std::all_of(is_fixed.begin(), is_fixed.end(), [](bool fixed) { return fixed; })) {
-      step.ways = fixed;
-      step.length = 0;
-      break;
+bool Descent::is_stiff(const Modes& modes, Eigen::Index i) const {
+  return modes.curvature[i] > kFirm * potentials_.reference();
+}
+
+/// Brings the stiff motions to rest, by Newton's method. Returns false if that fails.
+bool Descent::sink(StepResult& result) {
+  double last = kFirstRadius;
+  for (int count = 0; count < kMostSinks; ++count) {
+    const Modes now = modes(next_, TouchedStops(potentials_, next_));
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(now.force.size());
+    for (Eigen::Index i = 0; i < along.size(); ++i)
+      if (is_stiff(now, i)) along[i] = -now.force[i] / now.curvature[i];
+    const double way = along.norm();
+    if (!(way < last)) return last <= tolerance_;
+    last = way;
+    sunk_.state = next_.state;
+    if (!potentials_.move(next_, now.motions * along, sunk_.state, result) || !potentials_.look(sunk_)) return false;
+    std::swap(next_, sunk_);
+  }
+  return false;
+}
+
+/// Sets of the coordinates that may leave their stops, for which the curvature is negative in some motion. All sets are
+/// tried, unless there are too many: then small ones, and that of all these coordinates.
+std::vector<Descent::AxisSet> Descent::unstable_sets(const JointPotential& at, TouchedStops& stops) {
+  const AxisSet loose = stops.free_to_leave();
+  std::vector<AxisSet> sets{{}}, unstable;
+  for (std::size_t i = 0; i < sets.size() && sets.size() < kMostSets; ++i)
+    for (const std::size_t axis : loose) {
+      if (!sets[i].empty() && axis <= sets[i].back()) continue;
+      sets.push_back(sets[i]);
+      sets.back().push_back(axis);
+    }
+  if (sets.size() >= kMostSets) sets.push_back(loose);
+  for (const AxisSet& set : sets) {
+    stops.open(set);
+    const Modes modes = this->modes(at, stops);
+    if ((modes.curvature.array() < -modes.round_off.array()).any()) unstable.push_back(set);
+  }
+  stops.open({});
+  return unstable;
+}
+
+/// Steps along negative curvature, the most promising ones first.
+std::vector<Descent::Step> Descent::ways_out(const JointPotential& at, TouchedStops& stops,
+                                             const std::vector<AxisSet>& sets, double radius) {
+  std::vector<Step> steps;
+  for (const AxisSet& set : sets) {
+    stops.open(set);
+    for (const double side : {1.0, -1.0}) {
+      const Step step = step_from(at, stops, {radius, side, stops.weak_force()});
+      if (step.promise > potentials_.round_off_of_loads(step.ways)) steps.push_back(step);
     }
   }
-  step.promise = -step.ways.dot(at.force + 0.5 * (at.curvature * step.ways));
-  return step;
+  stops.open({});
+  std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.promise > b.promise; });
+  return steps;
 }
 
-bool Descent::rests(const Modes& modes, double tolerance) {
-  for (Eigen::Index i = 0; i < modes.curvature.size(); ++i)
-    if (std::abs(modes.force[i]) > modes.round_off[i] && modes.way(i) > tolerance) return false;
-  return true;
+/// Makes a step along negative curvature, if the potential falls as the model promises.
+bool Descent::step_out(JointPotential& at, const Step& step, StepResult& result) {
+  const double error = kErrorOfFall * potentials_.reference() * std::pow(step.ways.norm(), 5);
+  double share = 0;
+  if (step.promise > error && take(at, step, share, result)) {
+    if (share > kPoor) return true;
+    std::swap(at, next_);
+  }
+  return take_and_sink(at, step, result);
+}
+
+/// Leaves a configuration at rest that is no minimum. Returns false if no way leads down from there.
+bool Descent::leave(JointPotential& at, TouchedStops& stops, StepResult& result) {
+  const std::vector<AxisSet> sets = unstable_sets(at, stops);
+  if (sets.empty()) return false;
+  State here = at.state;
+  for (double radius = kFirstRadius; radius > kNearestWayOut; radius *= kShrinks)
+    for (const Step& step : ways_out(at, stops, sets, radius)) {
+      if (!step_out(at, step, result)) continue;
+      if (!has_left_) left_ = std::move(here);
+      has_left_ = true;
+      return true;
+    }
+  return false;
 }
 
 bool Descent::find(State& state, int load_steps, StepResult& result) {
@@ -184,55 +188,59 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
   if (!begin(state)) return false;
   for (int step = 1; step <= load_steps && !potentials_.is_rigid(); ++step)
     if (!potentials_.rest(state, static_cast<double>(step) / load_steps, result)) return false;
-  result.reason = StepResult::Reason::NeverRests;
-  JointPotential at, next;
+  JointPotential at;
   at.state = state;
   if (!potentials_.look(at)) return false;
+  const State start = state;
+  const bool is_found = descend(at, result);
+  state = at.state;
+  if (is_found)
+    polish(at, state);
+  else
+    find_unheld(start, state, result);
+  return is_found;
+}
+
+bool Descent::descend(JointPotential& at, StepResult& result) {
   double radius = kFirstRadius;
-  for (int count = 0; count < kMostSteps; ++count) {
-    state = at.state;
-    if (potentials_.choose_axes(state) && !potentials_.look(at)) return false;
-    const std::vector<bool> none(potentials_.axes().size(), false);
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(none.size()));
+  for (int count = 0; count < kMostSteps && radius >= kSmallestRadius; ++count) {
+    if (potentials_.choose_axes(at.state) && !potentials_.look(at)) return false;
     ++result.iterations;
-    const Modes whole = modes(at, none, still);
-    if (rests(whole, tolerance_)) {
-      bool is_minimum = true;
-      for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
-        is_minimum = is_minimum && whole.curvature[i] >= -whole.round_off[i];
-      if (is_minimum) {
-        // The estimate of round-off is for the worst case. Newton's method can often do better.
-        bool is_sharp = true;
-        for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
-          is_sharp = is_sharp && (whole.curvature[i] <= whole.round_off[i] || whole.way(i) <= tolerance_);
-        if (!is_sharp) sharpen(state);
-        return true;
-      }
-      if (!has_left_) left_ = at.state;
-      has_left_ = true;
+    TouchedStops stops(potentials_, at);
+    if (rests(at, stops)) {
+      if (leave(at, stops, result)) continue;
+      const Modes modes = this->modes(at, stops);
+      const double slight = kSlight * potentials_.reference();
+      return (modes.curvature.array() >= -modes.round_off.array().max(slight)).all();
     }
-    const Step step = step_from(at, radius);
-    if (step.ways.isZero(0)) return rests(whole, tolerance_);
-    bool is_taken = false;
-    double share = -1;
-    if (potentials_.move(at, step.ways, next.state, result) && potentials_.look(next)) {
-      // The fall of the potential along the actual motion, by Hermite's rule.
-      const Eigen::VectorXd ways = potentials_.ways(at.state, next.state);
-      const double fall = -0.5 * ways.dot(at.force + next.force) -
-                          (ways.dot(at.curvature * ways) - ways.dot(next.curvature * ways)) / 12;
-      const double noise = potentials_.round_off_of_loads(ways);
-      share = step.promise > 0 ? fall / step.promise : -1;
-      // At the corner of a stop, the quadratic model knows one side only.
-      const bool is_tiny = ways.norm() <= kTiny;
-      is_taken = share > kTaken || (std::abs(fall) <= noise && (is_tiny || next.force.norm() < at.force.norm()));
-    }
-    if (is_taken) std::swap(at, next);
+    const Step step = best_step(at, stops, radius);
+    if (step.ways.isZero(0)) return false;
+    double share = 0;
+    if (!take(at, step, share, result) && follow_valley(at, stops, result)) continue;
     if (share < kPoor) radius = kShrinks * std::min(radius, std::max(step.length, kSmallestRadius));
     if (share > kGood && step.length > 0.9 * radius) radius = std::min(kGrows * radius, kLargestRadius);
-    if (radius < kSmallestRadius) break;
   }
-  state = at.state;
   return false;
+}
+
+/// The estimate of round-off is for the worst case. Newton's method can often do better.
+void Descent::polish(const JointPotential& at, State& state) {
+  const Modes all = modes(at);
+  for (Eigen::Index i = 0; i < all.curvature.size(); ++i)
+    if (all.curvature[i] > all.round_off[i] && all.way(i) > tolerance_) {
+      sharpen(state);
+      return;
+    }
+}
+
+void Descent::find_unheld(const State& start, const State& end, StepResult& result) {
+  result.reason = StepResult::Reason::NoConvergence;
+  const Eigen::VectorXd ways = potentials_.ways(start, end).cwiseAbs();
+  Eigen::Index farthest = 0;
+  if (!(ways.maxCoeff(&farthest) > kFar)) return;
+  result.reason = StepResult::Reason::NeverRests;
+  result.failure.place = {};
+  result.failure.place.coordinate = static_cast<int>(potentials_.axes()[farthest].coordinate);
 }
 
 bool Descent::rest(State& state, StepResult& result) {
@@ -253,13 +261,11 @@ bool JointHold::is_firm() const {
 
 bool Descent::sharpen(State& state) {
   if (!begin(state)) return false;
-  const std::vector<bool> none(potentials_.axes().size(), false);
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(none.size()));
   JointPotential at;
   at.state = state;
   for (double last = std::numeric_limits<double>::infinity();;) {
     if (!potentials_.look(at)) return false;
-    const Modes whole = modes(at, none, still);
+    const Modes whole = modes(at);
     Eigen::VectorXd along = Eigen::VectorXd::Zero(whole.force.size());
     for (Eigen::Index i = 0; i < along.size(); ++i)
       if (std::abs(whole.curvature[i]) > whole.round_off[i]) along[i] = -whole.force[i] / whole.curvature[i];
@@ -279,11 +285,10 @@ bool Descent::judge(const State& equilibrium, JointHold& hold) {
   JointPotential at;
   at.state = equilibrium;
   if (!potentials_.look(at)) return false;
-  const std::vector<bool> none(potentials_.axes().size(), false);
-  const Modes whole = modes(at, none, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(none.size())));
+  const Modes whole = modes(at);
   hold = {};
   hold.least = std::numeric_limits<double>::infinity();
-  std::vector<bool> is_free(none);
+  std::vector<bool> is_free(potentials_.axes().size(), false);
   for (Eigen::Index i = 0; i < whole.curvature.size(); ++i) {
     const Eigen::VectorXd motion = whole.motions.col(i);
     if (whole.is_flat(i)) {

@@ -8,7 +8,6 @@
 
 #include "analysis/linearised_motion.h"
 #include "joints/joint_map.h"
-#include "joints/joint_stop.h"
 #include "math/least_squares.h"
 
 namespace flexarm {
@@ -53,6 +52,7 @@ JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const
 }
 
 void JointPotentials::find_bounds() {
+  stopped_.clear();
   bounds_.clear();
   std::vector<std::size_t> axis_of(model_.coordinates.size(), model_.coordinates.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) axis_of[axes_[i].coordinate] = i;
@@ -63,18 +63,38 @@ void JointPotentials::find_bounds() {
       continue;
     const std::size_t axis = axis_of[follows ? coordinate.mimicked : c];
     if (axis == model_.coordinates.size() || (follows && coordinate.mimic.multiplier == 0)) continue;
-    add_bounds(axis, coordinate, follows ? coordinate.mimic.multiplier : 1, follows ? coordinate.mimic.offset : 0);
+    add_bounds(axis, c);
   }
 }
 
-void JointPotentials::add_bounds(std::size_t axis, const Coordinate& coordinate, double multiplier, double offset) {
+void JointPotentials::add_bounds(std::size_t axis, std::size_t index) {
+  const Coordinate& coordinate = model_.coordinates[index];
+  const bool follows = coordinate.mimicked >= 0;
+  const double multiplier = follows ? coordinate.mimic.multiplier : 1, offset = follows ? coordinate.mimic.offset : 0;
+  stopped_.push_back({axis, index, multiplier, stop_penalty(coordinate, scheme_.contact_time)});
   const LimitStop& limit = *coordinate.limit;
-  const double stiffness = stop_penalty(coordinate, scheme_.contact_time).stiffness * multiplier * multiplier;
+  const double stiffness = stopped_.back().penalty.stiffness * multiplier * multiplier;
   const double size = std::abs(multiplier), sign = multiplier > 0 ? 1 : -1;
   if (std::isfinite(limit.lower))
     bounds_.push_back({axis, (limit.lower - offset) / multiplier, -sign, stiffness, limit.give_below / size});
   if (std::isfinite(limit.upper))
     bounds_.push_back({axis, (limit.upper - offset) / multiplier, sign, stiffness, limit.give_above / size});
+}
+
+void JointPotentials::add_stops(JointPotential& at) const {
+  at.stop_force = at.stop_curvature = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(axes_.size()));
+  at.stop_energy = 0;
+  for (const Stopped& stopped : stopped_) {
+    const Coordinate& coordinate = model_.coordinates[stopped.coordinate];
+    CoordinateStep there;
+    there.begin = there.end = at.state.released[coordinate.joint].displacement[coordinate.component];
+    const PassiveEffort effort = stop_effort(*coordinate.limit, stopped.penalty, there);
+    const double way = stopped.multiplier / axes_[stopped.axis].scale;
+    const auto i = static_cast<Eigen::Index>(stopped.axis);
+    at.stop_force[i] -= effort.effort * way;
+    at.stop_curvature[i] -= effort.slope * way * way;
+    at.stop_energy += stop_energy(*coordinate.limit, stopped.penalty, there.end);
+  }
 }
 
 double JointPotentials::position(const State& state, std::size_t axis) const {
@@ -127,12 +147,21 @@ JointPotentials::Matrix JointPotentials::tangent_matrix() const {
 
 bool JointPotentials::begin(const State& state) {
   choose_axes(state);
-  if (axes_.empty()) return false;
+  return !axes_.empty() && find_reference(state);
+}
+
+bool JointPotentials::find_reference(const State& state) {
   reference_ = work_of_forces(model_, state);
   system_.begin_equilibrium(state, 1);
-  if (!system_.evaluate(false)) return false;
+  if (!system_.evaluate(reference_ == 0)) return false;
   if (reference_ == 0) reference_ = system_.scales().largest_moment(system_.residual());
-  return std::isfinite(reference_) && reference_ > 0;
+  if (reference_ != 0) return std::isfinite(reference_);
+  const auto stiffness = [&](const Axis& axis) {
+    return std::abs(tangent_matrix().coeff(axis.equation, axis.equation)) / (axis.scale * axis.scale);
+  };
+  for (const Axis& axis : axes_) reference_ = std::max(reference_, stiffness(axis));
+  if (reference_ == 0) reference_ = 1;
+  return std::isfinite(reference_);
 }
 
 /// Replaces the rows of the joint coordinates by those of a unit matrix.
@@ -190,6 +219,7 @@ bool JointPotentials::look(JointPotential& at) {
     at.curvature.row(i) = forces.row(axes_[i].equation) / axes_[i].scale;
   }
   at.curvature = (0.5 * (at.curvature + at.curvature.transpose())).eval();
+  add_stops(at);
   return at.curvature.allFinite() && at.force.allFinite();
 }
 
@@ -266,7 +296,8 @@ double JointPotentials::round_off_of_loads(const Eigen::VectorXd& motion) const 
 }
 
 /// Adds up the terms of weight and loads, of springs and stops of coordinates, and of beams.
-Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen::MatrixXd& motions) const {
+Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen::MatrixXd& curvature,
+                                           const Eigen::MatrixXd& motions) const {
   Eigen::VectorXd round_off(motions.cols());
   std::optional<LinearisedMotion> beams;
   if (!is_rigid() && motions.cols() > 0) beams.emplace(model_, at.state, scheme_.contact_time);
@@ -276,7 +307,7 @@ Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double place = std::max(1.0, std::abs(axes_[i].scale * position(at.state, i)));
-      round_off[m] += kStiffnessRoundOff * std::abs(at.curvature(k, k)) * place * motion[k] * motion[k];
+      round_off[m] += kStiffnessRoundOff * std::abs(curvature(k, k)) * place * motion[k] * motion[k];
     }
     if (!beams) continue;
     Eigen::VectorXcd all = Eigen::VectorXcd::Zero(beams->unknowns());

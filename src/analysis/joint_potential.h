@@ -8,6 +8,7 @@
 
 #include "integrators/step_settings.h"
 #include "integrators/step_system.h"
+#include "joints/joint_stop.h"
 #include "solver/sparse_tangent.h"
 
 namespace flexarm {
@@ -15,9 +16,12 @@ namespace flexarm {
 /// The potential near a configuration, if beams follow the joints in equilibrium. Motions of coordinates, called ways,
 /// are in rad, or in units of the model's length scale.
 struct JointPotential {
-  State state;                 ///< the configuration
-  Eigen::VectorXd force;       ///< gradient, per coordinate [J]
-  Eigen::MatrixXd curvature;   ///< symmetric [J]
+  State state;                ///< the configuration
+  Eigen::VectorXd force;      ///< gradient, per coordinate [J]
+  Eigen::MatrixXd curvature;  ///< symmetric [J]
+  /// The parts of `force` and of the diagonal of `curvature` that stops of the axes make, and their energy [J].
+  Eigen::VectorXd stop_force, stop_curvature;
+  double stop_energy = 0;
   Eigen::MatrixXd motions;     ///< of all unknowns; one column per coordinate, for a way of 1
   Eigen::VectorXd correction;  ///< Newton's step of beams while joints stand still
   /// Per unknown: the multipliers of loops that best balance the residual; zero for all other unknowns.
@@ -59,11 +63,11 @@ class JointPotentials {
   /// Position of an axis; 0 for a component of a free rotation.
   double position(const State& state, std::size_t axis) const;
 
-  /// Largest curvature that weight and loads make; without these, the largest moment of the residual [J]. 0: nothing
-  /// acts.
+  /// Largest curvature that weight and loads make; without these, the largest moment of the residual; if nothing acts,
+  /// the largest stiffness of a coordinate, or 1 if there is none [J].
   double reference() const { return reference_; }
-  /// Chooses the axes and reference() for this state. Returns false if nothing can move or acts there, or if something
-  /// is not finite.
+  /// Chooses the axes and reference() for this state. Returns false if nothing can move there, or if something is not
+  /// finite.
   bool begin(const State& state);
   /// Chooses the axes of loops anew, and their bounds. Returns true if the axes have changed.
   bool choose_axes(const State& state);
@@ -81,7 +85,9 @@ class JointPotentials {
   /// The ways of coordinates between two configurations.
   Eigen::VectorXd ways(const State& from, const State& to) const;
   /// For each motion of the coordinates (a column): by how much round-off may change its force and curvature [J].
-  Eigen::VectorXd round_off(const JointPotential& at, const Eigen::MatrixXd& motions) const;
+  /// `curvature`: that of `at`, with or without stops.
+  Eigen::VectorXd round_off(const JointPotential& at, const Eigen::MatrixXd& curvature,
+                            const Eigen::MatrixXd& motions) const;
   /// The part of round_off() by weight and loads alone.
   double round_off_of_loads(const Eigen::VectorXd& motion) const;
 
@@ -96,7 +102,9 @@ class JointPotentials {
   Matrix tangent_matrix() const;
   std::vector<std::size_t> independent() const;
   void find_bounds();
-  void add_bounds(std::size_t axis, const Coordinate& coordinate, double multiplier, double offset);
+  void add_bounds(std::size_t axis, std::size_t coordinate);
+  void add_stops(JointPotential& at) const;
+  bool find_reference(const State& state);
 
   const Model& model_;
   const Scheme scheme_;
@@ -104,7 +112,14 @@ class JointPotentials {
   StepSystem system_;
   std::vector<Axis> coordinates_;  // all that are unknowns
   std::vector<Axis> axes_;
-  std::vector<Bound> bounds_;
+  /// A coordinate with stops that is an axis, or follows one.
+  struct Stopped {
+    std::size_t axis, coordinate;
+    double multiplier;  // of the axis
+    StopPenalty penalty;
+  };
+  std::vector<Stopped> stopped_;
+  std::vector<Bound> bounds_;     // of these
   std::vector<int> multipliers_;  // their equations
   double reference_ = 0;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/node_ways.h"
+
 namespace flexarm {
 namespace {
 
@@ -17,6 +19,9 @@ constexpr double kMoreDrag = 4, kLessDrag = 1. / 16;
 /// If steps become longer, the mechanism is leaving an unstable equilibrium, to which Newton's steps would lead back.
 /// So the drag shrinks only after this many steps in a row have become shorter.
 constexpr int kShorterInARow = 3;
+/// A mechanism that has not come to rest and has moved farther than this moves without limit [rad, or in units of the
+/// length scale].
+constexpr double kFar = 30;
 
 }  // namespace
 
@@ -32,7 +37,8 @@ bool Settling::settle(State& state, double load_factor, StepResult& result) {
 }
 
 bool Settling::settle(State& state, double load_factor, double drag, StepResult& result) {
-  double last_way = 0;
+  double last_way = 0, all_ways = 0;
+  State last = state;
   for (int step = 0, attempts = 0, shorter = 0; step < kMostSteps; ++step) {
     drag = std::max(drag, neutral_);
     system_.begin_equilibrium(state, load_factor, drag);
@@ -44,13 +50,19 @@ bool Settling::settle(State& state, double load_factor, double drag, StepResult&
       continue;
     }
     attempts = 0;
+    all_ways += way;
+    last = state;
     system_.accept(state);
     if (way <= tolerance_) return true;
     shorter = way < last_way ? shorter + 1 : 0;
     if (way > kAimedWay || shorter >= kShorterInARow) drag *= std::max(way / kAimedWay, kLessDrag);
     last_way = way;
   }
+  result.reason = StepResult::Reason::NoConvergence;
+  if (all_ways < kFar) return false;
   result.reason = StepResult::Reason::NeverRests;
+  result.failure.place = {};
+  result.failure.place.link = NodeWays(model_, ways_between(last, state)).link_index();
   return false;
 }
 

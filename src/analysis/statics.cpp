@@ -1,10 +1,12 @@
 #include "analysis/statics.h"
 
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "analysis/descent.h"
+#include "analysis/node_ways.h"
 #include "analysis/settling.h"
 #include "analysis/stability.h"
 
@@ -13,9 +15,13 @@ namespace {
 
 /// First displacement along an unstable motion [rad, or in units of the length scale].
 constexpr double kPush = 1e-3;
-/// Drag with which an unstable equilibrium is left, relative to its curvature: with it, displacements double in each
-/// step.
-constexpr double kDragOfFall = 2;
+/// Drag with which an unstable equilibrium is left, relative to its curvature: with 2, displacements double in each
+/// step. If the mechanism comes back, the drag was too small, and the next one is tried.
+constexpr double kDragsOfFall[] = {2, 8, 32};
+/// A mechanism that has moved no farther than this has come back [rad, or in units of the length scale].
+constexpr double kNear = 2 * kPush;
+/// How often the steps in which loads grow may be halved.
+constexpr int kMostHalvings = 10;
 /// Most unstable equilibria that a mechanism may leave one after the other.
 constexpr int kMostFalls = 10;
 /// In each turn the errors of servos with an integral shrink, by the stiffness of the loads over the sum of this
@@ -48,7 +54,7 @@ class EquilibriumSearch {
         state_(state),
         system_(model, statics),
         newton_(system_, settings),
-        settling_(system_, newton_, neutral_curvature(model, state), settings.tolerance) {}
+        settling_(model, system_, newton_, neutral_curvature(model, state), settings.tolerance) {}
 
   const State& state() const { return state_; }
   const StaticResult& result() const { return result_; }
@@ -137,10 +143,21 @@ class EquilibriumSearch {
       result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
   }
 
+  /// Steps that fail are halved.
   bool increase_loads(int load_steps) {
-    for (int step = 1; step <= load_steps; ++step) {
-      const double factor = static_cast<double>(step) / load_steps;
-      if (!solve(factor) && !settling_.settle(state_, factor, result_)) return false;
+    const double longest = 1.0 / load_steps, shortest = std::ldexp(longest, -kMostHalvings);
+    double step = longest;
+    for (double reached = 0; reached < 1;) {
+      const double factor = reached + 1.5 * step < 1 ? reached + step : 1;
+      const State before = state_;
+      if (solve(factor) || settling_.settle(state_, factor, result_)) {
+        reached = factor;
+        step = std::min(2 * step, longest);
+        continue;
+      }
+      step = 0.5 * (factor - reached);
+      if (step < shortest || result_.reason == StepResult::Reason::NeverRests) return false;
+      state_ = before;
     }
     return let_servos_integrate();
   }
@@ -154,7 +171,7 @@ class EquilibriumSearch {
     const bool falls = is_found && wanted == Equilibrium::Stable && !search.result_.falling_link.empty();
     result_.falling_link = search.result_.falling_link;
     result_.loose_link = search.result_.loose_link;
-    if (!is_found) result_.reason = search.result_.reason;
+    if (!is_found) result_.reason = search.result_.reason, result_.failure = search.result_.failure;
     if (!falls) return is_found;
     state_ = search.state_;
     system_.forget_path(state_);
@@ -214,15 +231,25 @@ class EquilibriumSearch {
 
   /// Pushes the mechanism along the motion; in the opposite direction if a slider would leave its line.
   bool leave(const UnstableMotion& motion) {
-    for (const double push : {kPush, -kPush}) {
-      system_.begin_equilibrium(state_, 1);
-      system_.update(push * motion.direction);
-      if (!system_.evaluate(false)) continue;
-      system_.accept(state_);
-      return settling_.settle(state_, 1, -kDragOfFall * motion.curvature, result_);
+    const State start = state_;
+    for (const double drag : kDragsOfFall) {
+      if (!push(start, kPush * motion.direction) && !push(start, -kPush * motion.direction)) {
+        result_.reason = StepResult::Reason::OffTheLine;
+        return false;
+      }
+      const bool rests = settling_.settle(state_, 1, -drag * motion.curvature, result_);
+      if (rests && NodeWays(model_, ways_between(start, state_)).largest() > kNear) return true;
     }
-    result_.reason = StepResult::Reason::OffTheLine;
     return false;
+  }
+
+  bool push(const State& start, const Eigen::VectorXd& way) {
+    system_.begin_equilibrium(start, 1);
+    system_.update(way);
+    if (!system_.evaluate(false)) return false;
+    state_ = start;
+    system_.accept(state_);
+    return true;
   }
 
   const Model& model_;

@@ -39,6 +39,11 @@ std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, con
   return names;
 }
 
+std::string unheld_part(const Model& model, const StepResult::Place& place) {
+  if (place.coordinate >= 0) return fmt::format("joint '{}'", model.coordinates[place.coordinate].name);
+  return fmt::format("link '{}'", model.links[place.link].name);
+}
+
 /// "joint 'a'", or "joints 'a', 'b' and 3 others".
 std::string listed(const std::vector<std::string>& names) {
   std::string text = names.size() == 1 ? "joint" : "joints";
@@ -63,6 +68,9 @@ std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Mode
   const bool is_singular =
       result.reason == StepResult::Reason::SingularTangent || result.reason == StepResult::Reason::NoConvergence ||
       result.reason == StepResult::Reason::NeverRests || result.reason == StepResult::Reason::NotFinite;
+  if (joints.empty() && result.reason == StepResult::Reason::NeverRests && result.failure.place.is_known())
+    return fmt::format("no equilibrium: the loads move {} without limit: nothing holds it",
+                       unheld_part(model, result.failure.place));
   if (!is_singular || joints.empty()) return fmt::format("no equilibrium found ({})", to_string(result.reason));
   const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
   return fmt::format(

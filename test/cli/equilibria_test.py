@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Test equilibria that `flexarm static` finds: `equilibria_test.py PROGRAM`.
 
-The scenes are arms whose first axis is vertical or slightly tilted, loops, and joints whose limits are equal.
+The scenes are arms whose first axis is vertical or slightly tilted, loops, joints whose limits are equal, and columns.
 Independent code is the judge: numpy computes potential and moments by forward kinematics, and scipy minimises the
-potential from the position that flexarm found.
+potential from the position that flexarm found. The judge of columns is Euler's elastica.
 """
 
 import csv
@@ -16,6 +16,7 @@ import unittest
 
 import numpy as np
 import scipy.optimize
+import scipy.special
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
@@ -319,6 +320,42 @@ class WithoutRange(Scenes):
                 damping = 0.497239 * swing
                 exact = np.sqrt(swing**2 - weight / inertia - damping**2) / (2 * np.pi)
                 self.assertAlmostEqual(frequency, exact, delta=1e-6 * exact)
+
+
+class Columns(Scenes):
+    """Clamped columns of length 1 and bending stiffness 1, beyond their buckling load. Without a load across, and with
+    one that is as small as the imperfections of real columns."""
+
+    STIFFNESS = 1e6  # against stretch and shear
+
+    def tip(self, ratio, across, elements):
+        """Return {tip's position, its distance to the side} under `ratio` times the buckling load."""
+        self.write("""<robot name="column"> <link name="world"/> <link name="column"> <beam elements="%d" order="2">
+          <centerline> <line to="0 0 1"/> </centerline> <orientation y="0 1 0"/>
+          <section ea="%g" ga2="%g" ga3="%g" gj="1" ei2="1" ei3="1" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/> </beam>
+          </link> <joint name="clamp" type="fixed"> <parent link="world"/> <child link="column"/> </joint>
+          <simulation> <gravity xyz="0 0 0"/> <load link="column" at="0 0 1" force="%r 0 %r"/>
+          <probe name="tip" link="column" at="0 0 1"/> </simulation> </robot>"""
+                   % (elements, *3 * (self.STIFFNESS,), across, -ratio * np.pi**2 / 4))
+        run = subprocess.run([PROGRAM, "static", self.path], capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertRegex(run.stderr, "not stable: link 'column'")
+        return [float(value) for value in re.search(r"probe tip +(\S+) +(\S+) +(\S+)", run.stdout).groups()]
+
+    def test_elastica(self):
+        for ratio in (1.05, 1.5, 2.5, 3.5, 3.75, 4, 4.5):
+            root = np.pi / 2 * np.sqrt(ratio)  # K(k) of the elastica
+            modulus = scipy.optimize.brentq(lambda m: scipy.special.ellipk(m) - root, 1e-6, 1 - 1e-12, xtol=1e-15)
+            height = 2 * scipy.special.ellipe(modulus) / root - 1
+            side = 2 * np.sqrt(modulus) / root
+            for elements in (8, 24):
+                # Strains of the order of the load over the stiffness; elements of order two.
+                error = 10 * ratio * np.pi**2 / 4 / self.STIFFNESS + 4 * (2 * np.pi / elements)**4 / 180
+                for across in (0.0, 1e-7):
+                    with self.subTest(ratio=ratio, elements=elements, across=across):
+                        x, y, z = self.tip(ratio, across, elements)
+                        self.assertAlmostEqual(z, height, delta=error)
+                        self.assertAlmostEqual(x if across else np.hypot(x, y), side, delta=error)
 
 
 if __name__ == "__main__":
