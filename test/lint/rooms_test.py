@@ -57,7 +57,7 @@ def errors_of(text):
         universal_newlines=True,
         check=False,
     )
-    return result.stderr if result.returncode else ""
+    return (result.stderr or "status %d" % result.returncode) if result.returncode else ""
 
 
 def texts_of_headers_alone(folder):
