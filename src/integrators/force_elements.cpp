@@ -163,7 +163,7 @@ void ForceElements::note_events(FirstEvent& first) {
   const ForceElementList& elements = configuration_.model().force_elements;
   const PenetrationTaker take = [&](double begin, double end, double begin_rate) {
     const double event = crossing(begin, end, 0, begin_rate * step.duration);
-    end > 0 ? first.note(event) : first.note_kink(event);
+    end > 0 ? first.note_touch(event) : first.note_kink(event);
   };
   for (std::size_t k = 0; k < elements.size(); ++k)
     if (!far_.stays_far(k) && elements[k]->hits())

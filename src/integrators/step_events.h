@@ -31,6 +31,7 @@ inline double crossing(double begin, double end, double border, double start) {
 struct FirstEvent {
   double behind = 0, stop_behind = 0;
   double fraction = kNever;  ///< of the step, at the first event; kNever: there is none
+  double early = 0;          ///< fraction of the step by which touches of bodies count earlier
 
   void note(double event) {
     if (event > behind && event < fraction) fraction = event;
@@ -38,6 +39,8 @@ struct FirstEvent {
   void note_stop(double event) {
     if (event > stop_behind) note(event);
   }
+  /// For a touch of bodies. Steps end just before it, so that the next one begins with the speed of approach.
+  void note_touch(double event) { note(event - early); }
   /// For a kink of a force. Its error grows with the square of the distance of the event from the end of the step.
   void note_kink(double event) {
     if (event < 1 - stop_behind) note_stop(event);

@@ -123,6 +123,7 @@ StepResult::Reason Stepper::flaw_by_events(const State& state, double step, cons
   if (may_halve && system_.turn_too_fast(events.refinement)) return StepResult::Reason::HitTooFast;
   const double done = state.time - begin_;
   FirstEvent first{std::max((events.tolerance - done) / step, 0.0), events.slide / std::abs(step)};
+  first.early = 2 * events.tolerance / std::abs(step);
   system_.note_events(first);
   const double event = done + first.fraction * step;
   if (std::isfinite(event) && event < settings_.step - events.tolerance) {
