@@ -18,8 +18,8 @@ namespace {
 /// digits.
 constexpr double kVisibleImaginary = 1e-4;
 
-/// Error of shapes by round-off, relative to the largest component.
-constexpr double kShapeError = 1e-9;
+/// Error of shapes by round-off, relative to the largest component: more than elsewhere, since neighbouring modes mix.
+constexpr double kShapeError = 1e-8;
 
 struct ModesArguments {
   SceneInput scene;
