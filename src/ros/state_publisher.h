@@ -3,7 +3,10 @@
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -38,13 +41,20 @@ class StatePublisher {
   /// Joint states and frames of the present state, with the last stamp.
   const sensor_msgs::JointState& joint_states();
   const tf2_msgs::TFMessage& transforms();
+  void send_static_transforms();
 
   const Simulation& simulation_;
   std::string frame_prefix_;
   PublicationSchedule schedule_;
   std::optional<messages::StateMessages> messages_;
   ros::Time stamp_;
-  ros::Publisher joint_state_publisher_, transform_publisher_, static_transform_publisher_;
+  ros::Publisher joint_state_publisher_;
+  /// A broadcaster neither knows whether somebody listens, nor serves those who come while time stands still, and its
+  /// queue is short. Publishers of one node share a topic's queue and subscribers. So this one, which is advertised
+  /// first, sees to all that, and the broadcaster sends.
+  ros::Publisher transform_publisher_;
+  tf2_ros::TransformBroadcaster transform_broadcaster_;
+  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transform_broadcaster_;
 };
 
 }  // namespace flexarm::node
