@@ -252,13 +252,12 @@ std::string read_link_name(const XmlElement& joint, const char* tag) {
   return child ? child->name("link").value_or("") : "";
 }
 
-/// Returns the XML text of a joint as a <joint> between links named "parent" and "child", so that urdfdom can judge it
+/// Returns the XML text of a <joint> between links named "parent" and "child", so that urdfdom can judge it
 /// without the rest of the file.
 std::string printed_joint(const XmlElement& joint) {
   tinyxml2::XMLDocument document;
   tinyxml2::XMLElement* copy = joint.xml().DeepClone(&document)->ToElement();
   document.InsertEndChild(copy);
-  copy->SetName("joint");
   for (const char* tag : {"parent", "child"}) copy->FirstChildElement(tag)->SetAttribute("link", tag);
   return printed(*copy);
 }
@@ -327,7 +326,8 @@ JointDescription read_joint(const XmlElement& unnamed) {
   if (mimic && !mimic->has("joint") && !is_fixed(joint)) mimic->error("attribute 'joint' is missing");
   if (joint.findings().error_count() > errors) return description;
 
-  judge_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
+  if (joint.tag() == "joint")  // no other program reads a <loop_joint>
+    judge_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
   description.origin = read_origin(joint);
   if (description.kind != JointKind::Fixed) {
     description.damping = checked_number(joint, "dynamics", "damping");
