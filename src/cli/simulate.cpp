@@ -272,7 +272,10 @@ void add_time_and_accuracy(Command& command, SimulateArguments& arguments) {
               "mechanism's size if they rest (the scene's)")
       .check(check_part);
   command.option("--scheme", arguments.options.scheme, "integration scheme").choices(scheme_choices());
-  command.option("--tolerance", arguments.options.tolerance, "of Newton's method").check(check_tolerance);
+  command
+      .option("--tolerance", arguments.options.tolerance,
+              "of Newton's method. Steps leave its square, so that round-off hides what is below 3e-8")
+      .check(check_tolerance);
   command
       .option_of_words(
           "--on-failure",

@@ -122,8 +122,9 @@ std::string RunSummary::energy_warning() const {
   return fmt::format(
       "energy - work + dissipation changed by up to {:.2g} J at t = {:.6g} s, {:.2g} % of the largest energy, {}",
       energy_.amount, energy_.time, 100 * energy_.amount / energy_scale_,
-      is_explicit_ ? "by errors of the explicit scheme: a smaller step helps, or the scheme em"
-                   : "with a scheme that conserves it: a smaller tolerance or step helps");
+      is_explicit_
+          ? "by errors of the explicit scheme: a smaller step helps, or the scheme em"
+          : "with a scheme that conserves it: a smaller step helps, or a smaller tolerance if it is above 3e-8");
 }
 
 std::vector<std::string> RunSummary::warnings(const Simulation& simulation) const {
