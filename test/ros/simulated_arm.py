@@ -2,6 +2,7 @@
 
 import time
 
+import rosgraph
 import rospy
 from flexarm.msg import JointForceCommand, SimulatorStatus
 from flexarm.srv import ApplyWrench, LoadState, SaveState, SetJointState, Step, SwitchMode
@@ -83,8 +84,14 @@ def force_command(names, efforts, seconds=0.0):
 def wait_for_log(act, word):
     """Call `act` again and again, until a node logs a text that contains `word`."""
     heard = []
-    subscriber = rospy.Subscriber("/rosout_agg", Log, lambda log: word in log.msg and heard.append(log.msg))
-    wait_until(lambda: subscriber.get_num_connections() > 0, "the log")
+    subscriber = rospy.Subscriber("/rosout", Log, lambda log: word in log.msg and heard.append(log.msg))
+    master = rosgraph.Master(rospy.get_name())
+
+    def hears_all():
+        nodes = [nodes for topic, nodes in master.getSystemState()[0] if topic == "/rosout"]
+        return nodes and subscriber.get_num_connections() >= len(nodes[0])
+
+    wait_until(hears_all, "the logs of all nodes")
     for _ in range(int(PATIENCE)):
         act()
         end = time.monotonic() + 1.1  # refusals are logged once a second

@@ -13,7 +13,7 @@ from actionlib_msgs.msg import GoalStatus
 from flexarm.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal, FollowJointTrajectoryResult
 from flexarm.msg import JointTolerance
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, wait_until, warnings_during
+from simulated_arm import CommandTopic, SimulatedArm, release_stop, wait_until, warnings_during
 from std_msgs.msg import Bool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -234,8 +234,7 @@ class Trajectories(unittest.TestCase):
         self.wait_for_end(GoalStatus.ABORTED, told="emergency stop")
         self.send(["lift"], smooth(0.1, 1.0))
         self.wait_for_end(GoalStatus.REJECTED, told="emergency stop")
-        stop.send(False)
-        time.sleep(0.2)
+        release_stop(stop)
         self.send(["lift"], smooth(3.0, 1.0))
         wait_until(lambda: self.client.get_state() == GoalStatus.ACTIVE, "the goal to be accepted")
         self.arm.reset()
