@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/linearised_motion.h"
+#include "analysis/passed_contacts.h"
 #include "joints/joint_map.h"
 #include "math/least_squares.h"
 
@@ -239,7 +240,8 @@ bool JointPotentials::place(const JointPotential& from, const Eigen::VectorXd& s
 
 bool JointPotentials::move(const JointPotential& from, const Eigen::VectorXd& ways, State& to, StepResult& result) {
   if (!place(from, step(from, ways), to)) return false;
-  return is_rigid() || rest(to, 1, result);
+  if (!is_rigid() && !rest(to, 1, result)) return false;
+  return !pass_through(model_, from.state, to);
 }
 
 bool JointPotentials::rest(State& state, double factor, StepResult& result) {

@@ -75,7 +75,7 @@ class JointPotentials {
   /// Computes all members of `at` from its state. Returns false if the tangent is not finite, or singular.
   bool look(JointPotential& at);
   /// Moves the joints by `ways` from there, and beams with them. Then brings the beams to rest. Returns false if that
-  /// fails.
+  /// fails, or if bodies that may touch would pass through each other.
   bool move(const JointPotential& from, const Eigen::VectorXd& ways, State& to, StepResult& result);
   /// Brings beams to rest under `factor` times the loads, while joints are held. Returns false if that fails.
   bool rest(State& state, double factor, StepResult& result);

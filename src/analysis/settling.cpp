@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "analysis/node_ways.h"
+#include "analysis/passed_contacts.h"
 
 namespace flexarm {
 namespace {
@@ -44,15 +46,18 @@ bool Settling::settle(State& state, double load_factor, double drag, StepResult&
     system_.begin_equilibrium(state, load_factor, drag);
     const bool is_solved = newton_.solve(NewtonIteration::Updates::Limited, NewtonIteration::Factors::Fresh, result);
     const double way = is_solved ? system_.drag().largest_way() : std::numeric_limits<double>::infinity();
-    if (!(way <= kLongestWay)) {
+    State next = state;
+    if (is_solved) system_.accept(next);
+    if (!(way <= kLongestWay) || pass_through(model_, state, next)) {
+      if (is_solved) result.reason = StepResult::Reason::NoConvergence;
       if (++attempts == kMostAttempts) return false;
       drag *= kMoreDrag;
       continue;
     }
     attempts = 0;
     all_ways += way;
-    last = state;
-    system_.accept(state);
+    last = std::move(state);
+    state = std::move(next);
     if (way <= tolerance_) return true;
     shorter = way < last_way ? shorter + 1 : 0;
     if (way > kAimedWay || shorter >= kShorterInARow) drag *= std::max(way / kAimedWay, kLessDrag);
