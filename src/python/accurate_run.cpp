@@ -71,7 +71,7 @@ void bind_accurate_run(SimulationClass& type) {
   type.def("run_to_accuracy", &run_accurately,
            R"(Runs to a time, repeatedly and with more steps each time, until the estimated error is small enough.
 
-until: the time [s].
+until: the simulated time at the end, as `time` counts it: not the length of the run [s].
 accuracy: largest estimated error of the positions of probes (of tips if there are no probes), in (0, 1): root mean
   square over time, relative to `scale`. It is the error of time integration, without that of the meshes.
 intervals: number of equal intervals; errors are measured and rows recorded at their ends.

@@ -60,6 +60,7 @@ ValueError, and changes nothing, if it is impossible.)",
       .def("spawn", &spawn_model,
            R"(Adds the links and joints of another Scene, its root link floating at a pose, with a velocity.
 
+model: a Scene, from read_scene(path, to_spawn=True).
 orientation: quaternion x y z w. linear, angular: velocities of the root link's origin, world axes [m/s, rad/s]. prefix:
 put before the names of its links, joints, sensors and probes.)",
            py::arg("model"), py::arg("position") = Three{0, 0, 0},

@@ -28,6 +28,7 @@ clamp_start: joints that would start outside their limits start at the nearest l
 equilibrium_start: everything starts at rest in the equilibrium of loads, gravity and servos (start="equilibrium").
 lock_massless: joints that move nothing with inertia are held where they start (massless="lock").
 xacro_args: arguments for xacro, "NAME=VALUE NAME=VALUE", which expands a file *.xacro if it is installed.
+to_spawn: it is for Simulation.spawn(), where its root link floats: there is no warning that this link is clamped.
 
 Raises SceneError whose text has one line for each error of the file; doubtful contents give a SceneWarning.)";
 
@@ -55,17 +56,17 @@ ScenePointer scene_of(const scene::ReadOptions& options,
 }
 
 ScenePointer read_scene(const PathArgument& path, const ParameterValues& parameters, bool clamp_start,
-                        bool equilibrium_start, bool lock_massless, const std::string& xacro_args) {
-  return scene_of({clamp_start, lock_massless, equilibrium_start, parameters, xacro_args},
+                        bool equilibrium_start, bool lock_massless, const std::string& xacro_args, bool to_spawn) {
+  return scene_of({clamp_start, lock_massless, equilibrium_start, parameters, xacro_args, nullptr, to_spawn},
                   [path = std::filesystem::absolute(path.text).string()](const scene::ReadOptions& options) {
                     return scene::read_scene_file(path, options);
                   });
 }
 
 ScenePointer read_scene_text(const std::string& text, const std::string& name, const ParameterValues& parameters,
-                             bool clamp_start, bool equilibrium_start, bool lock_massless) {
+                             bool clamp_start, bool equilibrium_start, bool lock_massless, bool to_spawn) {
   return scene_of(
-      {clamp_start, lock_massless, equilibrium_start, parameters},
+      {clamp_start, lock_massless, equilibrium_start, parameters, {}, nullptr, to_spawn},
       [text, name](const scene::ReadOptions& options) { return scene::read_scene_text(text, name, options); });
 }
 
@@ -129,10 +130,10 @@ read_scene() and read_scene_text() make it.)");
 
   module.def("read_scene", &read_scene, kReadScene, py::arg("path"), py::arg("parameters") = ParameterValues(),
              py::kw_only(), py::arg("clamp_start") = false, py::arg("equilibrium_start") = false,
-             py::arg("lock_massless") = false, py::arg("xacro_args") = "");
+             py::arg("lock_massless") = false, py::arg("xacro_args") = "", py::arg("to_spawn") = false);
   module.def("read_scene_text", &read_scene_text, kReadSceneText, py::arg("text"), py::arg("name") = "scene",
              py::arg("parameters") = ParameterValues(), py::kw_only(), py::arg("clamp_start") = false,
-             py::arg("equilibrium_start") = false, py::arg("lock_massless") = false);
+             py::arg("equilibrium_start") = false, py::arg("lock_massless") = false, py::arg("to_spawn") = false);
 }
 
 }  // namespace flexarm::python

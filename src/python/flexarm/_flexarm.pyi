@@ -25,6 +25,7 @@ def read_scene(
     equilibrium_start: bool = ...,
     lock_massless: bool = ...,
     xacro_args: str = ...,
+    to_spawn: bool = ...,
 ) -> Scene: ...
 def read_scene_text(
     text: str,
@@ -34,6 +35,7 @@ def read_scene_text(
     clamp_start: bool = ...,
     equilibrium_start: bool = ...,
     lock_massless: bool = ...,
+    to_spawn: bool = ...,
 ) -> Scene: ...
 def tune(
     scene: Scene,
@@ -266,7 +268,7 @@ class Simulation:
     def sensitivities(self, parameters: Sequence[str] = ..., *, initial_state: bool = ...) -> Sensitivities: ...
     def run_to_accuracy(
         self,
-        until: float,
+        until: float,  # the simulated time at the end, not the length of the run [s]
         accuracy: float,
         intervals: int = ...,
         record: Optional[Sequence[str]] = ...,
