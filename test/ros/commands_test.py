@@ -3,14 +3,14 @@
 whole."""
 
 import math
-import time
 import unittest
 
 import rospy
 import rostest
 from flexarm.msg import JointForceCommand
 from sensor_msgs.msg import JointState
-from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until, warnings_of_flood
+from simulated_arm import (PATIENCE, CommandTopic, SimulatedArm, force_command, release_stop, wait_for_log, wait_until,
+                           warnings_of_flood)
 from std_msgs.msg import Bool, Float64
 from visualization_msgs.msg import MarkerArray
 
@@ -107,12 +107,10 @@ class Commands(unittest.TestCase):
         stop.send(True)
         self.wait_for_effort("left_shoulder", 0.0)
         self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)
-        self.force.send(force_command(["left_shoulder"], [2.0]))
-        time.sleep(0.2)
+        wait_for_log(lambda: self.force.send(force_command(["left_shoulder"], [2.0])), "the emergency stop is on")
         self.arm.step(1)
         self.assertEqual(self.arm.joint("left_shoulder").effort, 0.0)
-        stop.send(False)
-        time.sleep(0.2)
+        release_stop(stop)
         self.force.send(force_command(["left_shoulder"], [3.0]))
         self.wait_for_effort("left_shoulder", 3.0)
         self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)  # its command was forgotten

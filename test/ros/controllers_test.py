@@ -10,7 +10,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from flexarm import msg as messages
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, wait_until
+from simulated_arm import CommandTopic, SimulatedArm, release_stop, wait_until
 from std_msgs.msg import Bool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -280,8 +280,7 @@ class Controllers(unittest.TestCase):
         self.gripper.send(grip(0.025))
         self.assert_ends(self.gripper, GoalStatus.REJECTED)
         self.assertIn("emergency stop", self.gripper.client.get_goal_status_text())
-        stop.send(False)
-        rospy.sleep(0.2)
+        release_stop(stop)
         self.gripper.send(grip(0.025, 0.2))
         wait_until(lambda: self.gripper.feedback, "the way")
         self.arm.reset()

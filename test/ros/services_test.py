@@ -14,7 +14,7 @@ import rostest
 from flexarm.msg import JointForceCommand, SimulatorStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from simulated_arm import PATIENCE, CommandTopic, Joint, SimulatedArm, force_command, wait_until
+from simulated_arm import PATIENCE, CommandTopic, Joint, SimulatedArm, force_command, wait_for_arrival, wait_until
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
@@ -299,12 +299,10 @@ class Wrenches(ClockedArm):
     def test_moment_about_a_joint_does_what_its_effort_does(self):
         force = CommandTopic("joint_force_command", JointForceCommand)
         force.send(force_command(["right_shoulder"], [self.TORQUE]))
-        time.sleep(0.2)  # until the command has arrived
+        wait_for_arrival(force)
         self.make_steps()
         expected = self.angle()
-        force.send(force_command(["right_shoulder"], [0.0]))
-        time.sleep(0.2)
-        self.arm.reset()
+        self.arm.reset()  # forgets the command
         self.pull(frame="follower")
         self.make_steps()
         self.assertGreater(expected, 1e-3)
@@ -399,7 +397,7 @@ class Failure(ClockedArm):
 
     def test_goes_on_from_the_last_good_state_with_a_new_command(self):
         self.force.send(force_command(["left_shoulder"], [0.0]))
-        time.sleep(0.2)  # until the command has arrived
+        wait_for_arrival(self.force)
         failed_at = self.status()
         self.arm.resume()
         wait_until(lambda: self.status().time > failed_at.time, "the simulation to go on")
