@@ -98,7 +98,7 @@ class Pulls(unittest.TestCase):
         wait_until(lambda: "trails" in shown, "trails")
         subscriber.unregister()
         self.hand.send(feedback(Feedback.MOUSE_UP))
-        self.assertEqual(set(shown), {"rod", "trails", "applied wrenches", "reactions", "text", "legend"})
+        self.assertEqual(set(shown), {"rod", "trails", "applied wrenches", "reactions", "masses", "text", "legend"})
         self.assertEqual({marker.header.frame_id for markers in shown.values() for marker in markers}, {FRAME})
         # The beam is drawn as its box instead of the tube, whose radius would be 5 mm. It is bent by 3 N at its end.
         heights = [point.z for point in shown["rod"][-1].points]
