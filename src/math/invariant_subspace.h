@@ -3,17 +3,15 @@
 
 #include <complex>
 #include <functional>
-#include <vector>
 
 #include <Eigen/Core>
 
 namespace flexarm {
 
-/// Splits the eigenvalues of a matrix into `count` groups. For each group, returns an orthonormal basis of the
-/// invariant subspace that belongs to its eigenvalues. `group_of`: 0 to `count` - 1, the same for both eigenvalues of a
-/// conjugate pair.
+/// Returns an orthonormal basis of the invariant subspace of a matrix that belongs to the eigenvalues that are
+/// `wanted`. `wanted` must be the same for both eigenvalues of a conjugate pair.
 /// @throws std::runtime_error if the eigenvalues are not found
-std::vector<Eigen::MatrixXd> invariant_subspaces(const Eigen::MatrixXd& matrix, int count,
-                                                 const std::function<int(std::complex<double>)>& group_of);
+Eigen::MatrixXd invariant_subspace(const Eigen::MatrixXd& matrix,
+                                   const std::function<bool(std::complex<double>)>& wanted);
 
 }  // namespace flexarm

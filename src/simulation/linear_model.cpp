@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -223,13 +222,8 @@ std::optional<Eigenpairs> joined(const Eigenpairs& fast, const Eigenpairs& slow,
   return out;
 }
 
-/// Makes values below `size` 0.
-void clear_below(double size, Eigen::VectorXcd& values) {
-  values = (values.array().abs() < size).select(0, values);
-}
-
 /// The eigenvalue solver has an error relative to the largest eigenvalue. If the slow eigenvalues are much smaller,
-/// they are computed once more, as the large eigenvalues of (a - shift)^-1. Values that have no correct digits are 0.
+/// they are computed once more, as the large eigenvalues of (a - shift)^-1.
 Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
   Eigenpairs fast = dense_eigenpairs(a);
   const VectorXd sizes = fast.values.cwiseAbs();
@@ -237,47 +231,17 @@ Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
   double shift = largest;
   for (Eigen::Index i = 0; i < sizes.size(); ++i)
     if (sizes[i] > least_known) shift = std::min(shift, sizes[i]);
-  clear_below(least_known, fast.values);
   if (!(shift < kAlike * largest)) return fast;
   const MatrixXd identity = MatrixXd::Identity(a.rows(), a.cols());
   const MatrixXd inverse = square_solution(a - shift * identity, identity);
   if (!inverse.allFinite()) return fast;
   Eigenpairs slow = dense_eigenpairs(inverse);
   slow.values = (shift + slow.values.array().inverse()).matrix();
-  clear_below(kLeastKnown * shift, slow.values);
   const double middle = std::sqrt(shift * largest);
   for (const double size : {middle, 2 * middle, 0.5 * middle, 8 * middle, 0.125 * middle})
     if (std::optional<Eigenpairs> both = joined(fast, slow, size)) return *std::move(both);
   return fast;
 }
-
-/// Rounds the poles of a model of second order to 0 where they are that within round-off. If a stiffness is 0, its
-/// motion has two poles, 0 and -d with the damping d per mass. A round-off e of the stiffness per mass makes them the
-/// roots of p^2
-/// + d p + e.
-class ZeroPoles {
- public:
-  ZeroPoles(const LinearModel& model, const ScaledStates& scaled) : zero_(scaled.zero), split_(scaled.split) {
-    if (!(split_ > 0)) return;
-    std::vector<Eigen::Index> positions(static_cast<std::size_t>(model.positions));
-    std::iota(positions.begin(), positions.end(), 0);
-    const std::vector<Eigen::Index> places = places_of(model, positions);
-    mass_ = picked(model.mass, places, places);
-    damping_ = picked(model.damping, places, places);
-  }
-  void round(Pole& pole) const {
-    if (std::abs(pole.value.imag()) <= kReal * std::abs(pole.value)) pole.value.imag(0);
-    const double size = std::abs(pole.value);
-    if (!(size <= split_)) return;
-    const Eigen::VectorXcd motion = pole.mode.head(mass_.rows());
-    const double damping = std::abs(motion.dot(damping_ * motion)) / std::abs(motion.dot(mass_ * motion));
-    if (damping < 0.5 * size || size * (size + damping) <= zero_ * zero_) pole.value = 0;
-  }
-
- private:
-  double zero_, split_;
-  MatrixXd mass_, damping_;
-};
 
 }  // namespace
 
@@ -327,11 +291,9 @@ std::vector<Pole> poles(const LinearModel& model) {
   const ScaledStates scaled = scaled_states(model);
   const Eigenpairs pairs = eigenpairs_of_all_sizes(scaled.a);
   const Eigen::MatrixXcd modes = scaled.basis * pairs.vectors;
-  const ZeroPoles zeros(model, scaled);
   for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
     Pole pole{pairs.values[i], 0, modes.col(i)};
     if (pole.value.imag() < -kReal * std::abs(pole.value)) continue;
-    zeros.round(pole);
     Eigen::Index state = 0;
     pole.mode.head(model.positions).cwiseAbs().maxCoeff(&state);
     pole.state = static_cast<int>(state);

@@ -31,6 +31,18 @@ struct Shapes {
   MatrixXd shapes, coordinates;
 };
 
+/// For each of these position states, its index among the model's coordinates. Empty if one of them is no coordinate.
+std::vector<Index> places_of(const LinearModel& model, const std::vector<Index>& states) {
+  std::vector<Index> places;
+  for (const Index state : states) {
+    const auto found =
+        std::find(model.coordinates.begin(), model.coordinates.end(), model.states[static_cast<std::size_t>(state)]);
+    if (found == model.coordinates.end()) return {};
+    places.push_back(found - model.coordinates.begin());
+  }
+  return places;
+}
+
 /// Modes with unit norm in the mass matrix, the stiffest first. None if the mass matrix is not positive definite.
 std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) {
   if (!(mass.diagonal().minCoeff() > 0)) return std::nullopt;
@@ -88,52 +100,23 @@ std::optional<Shapes> shapes_of(const LinearModel& model) {
   return out;
 }
 
-using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// Sums over four columns at once, since each sum waits for its last addition.
-void multiply(const double* row, const long double* columns, Index size, long double* sums) {
-  long double a = 0, b = 0, c = 0, d = 0;
-  for (Index k = 0; k < size; ++k) {
-    const long double factor = row[k];
-    a += factor * columns[k];
-    b += factor * columns[size + k];
-    c += factor * columns[2 * size + k];
-    d += factor * columns[3 * size + k];
-  }
-  sums[0] = a, sums[1] = b, sums[2] = c, sums[3] = d;
-}
-
-/// left right with 64 bits of mantissa, in a tenth of the time that Eigen's product takes.
-Long long_product(const MatrixXd& left, const Long& right) {
-  const Index size = left.cols(), whole = (right.cols() + 3) / 4 * 4;
-  Long columns = Long::Zero(size, whole), out(left.rows(), right.cols());
-  columns.leftCols(right.cols()) = right;
-  const MatrixXd rows = left.transpose();
-  for (Index i = 0; i < left.rows(); ++i)
-    for (Index j = 0; j < whole; j += 4) {
-      long double sums[4];
-      multiply(rows.data() + i * size, columns.data() + j * size, size, sums);
-      for (Index k = 0; k < 4 && j + k < right.cols(); ++k) out(i, j + k) = sums[k];
-    }
-  return out;
-}
-
 /// States in modal coordinates: position and rate of each mode side by side. In the products, large terms of slow modes
 /// cancel. So these are computed with more digits than the matrices have, and none of the matrices' digits is lost.
 ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
+  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Index count = model.positions;
   const Long shapes = modes.shapes.cast<long double>();
-  // The inverse of `shapes` with more digits: `coordinates` and, by one iteration of Newton's method, what these lack.
-  const MatrixXd& coordinates = modes.coordinates;
-  const MatrixXd lacking =
-      (Long::Identity(count, count) - long_product(coordinates, shapes)).cast<double>() * coordinates;
-  const auto in_modes = [&](const Long& rows) -> MatrixXd {
-    return (long_product(coordinates, rows) + (lacking * rows.cast<double>()).cast<long double>()).cast<double>();
+  // One iteration of Newton's method makes this the inverse of `shapes` with more digits.
+  Long coordinates = modes.coordinates.cast<long double>();
+  coordinates = (coordinates * (2 * Long::Identity(count, count) - shapes * coordinates)).eval();
+  const auto in_modes = [&](const auto& rows) -> MatrixXd {
+    const Long seen = rows.template cast<long double>() * shapes;
+    return (coordinates * seen).template cast<double>();
   };
-  const MatrixXd stiffness = model.a.bottomLeftCorner(count, count), damping = model.a.bottomRightCorner(count, count);
-  const MatrixXd by_place = in_modes(long_product(stiffness, shapes)),
-                 by_rate = in_modes(long_product(damping, shapes)),
-                 inputs = in_modes(model.b.bottomRows(count).cast<long double>()), inverse = coordinates + lacking;
+  const auto stiffness = model.a.bottomLeftCorner(count, count);
+  const MatrixXd by_place = in_modes(stiffness), by_rate = in_modes(model.a.bottomRightCorner(count, count));
+  const MatrixXd inverse = coordinates.cast<double>();
+  const MatrixXd inputs = (coordinates * model.b.bottomRows(count).cast<long double>()).cast<double>();
   ScaledStates out;
   out.a = out.basis = out.inverse = MatrixXd::Zero(2 * count, 2 * count);
   out.b = MatrixXd::Zero(2 * count, model.b.cols());
@@ -176,17 +159,6 @@ void require_sizes(const LinearModel& model) {
 
 }  // namespace
 
-std::vector<Index> places_of(const LinearModel& model, const std::vector<Index>& states) {
-  std::vector<Index> places;
-  for (const Index state : states) {
-    const auto found =
-        std::find(model.coordinates.begin(), model.coordinates.end(), model.states[static_cast<std::size_t>(state)]);
-    if (found == model.coordinates.end()) return {};
-    places.push_back(found - model.coordinates.begin());
-  }
-  return places;
-}
-
 ScaledStates scaled_states(const LinearModel& model) {
   require_sizes(model);
   ScaledStates out;
@@ -196,11 +168,12 @@ ScaledStates scaled_states(const LinearModel& model) {
     out.a = model.a;
     out.b = model.b;
     out.basis = out.inverse = MatrixXd::Identity(model.a.rows(), model.a.cols());
+    out.zero = std::numeric_limits<double>::infinity();
   }
   Balanced balanced = flexarm::balanced(std::move(out.a));
   out.a = std::move(balanced.matrix);
   // The error of an eigenvalue solver splits a double pole by its square root.
-  if (out.zero > 0) out.split = std::max(out.zero, std::sqrt(kAboveRoundOff * kRoundOff * out.a.norm()));
+  if (out.zero > 0) out.zero = std::max(out.zero, std::sqrt(kAboveRoundOff * kRoundOff * out.a.norm()));
   out.basis = out.basis * balanced.scales.asDiagonal();
   out.inverse = balanced.scales.cwiseInverse().asDiagonal() * out.inverse;
   out.b = balanced.scales.cwiseInverse().asDiagonal() * out.b;

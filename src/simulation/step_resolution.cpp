@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "math/picked.h"
-#include "simulation/linear_scaling.h"
 
 namespace flexarm {
 namespace {
@@ -23,9 +21,11 @@ constexpr int kSteps = 2;
 
 /// The mass matrix of the states that are positions.
 Eigen::MatrixXd mass_of_states(const LinearModel& model) {
-  std::vector<Eigen::Index> positions(static_cast<std::size_t>(model.positions));
-  std::iota(positions.begin(), positions.end(), 0);
-  const std::vector<Eigen::Index> places = places_of(model, positions);
+  std::vector<Eigen::Index> places;
+  for (int i = 0; i < model.positions; ++i) {
+    const auto name = std::find(model.coordinates.begin(), model.coordinates.end(), model.states[i]);
+    places.push_back(name - model.coordinates.begin());
+  }
   return picked(model.mass, places, places);
 }
 

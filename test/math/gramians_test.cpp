@@ -40,15 +40,13 @@ TEST(Gramians, SolveTheEquationsOfLyapunov) {
 TEST(InvariantSubspace, IsMappedIntoItself) {
   const MatrixXd a = decaying_matrix();
   const auto is_slow = [](std::complex<double> value) { return value.real() > -0.6; };
-  const std::vector<MatrixXd> bases = invariant_subspaces(a, 3, [&](auto value) { return is_slow(value) ? 0 : 2; });
-  ASSERT_EQ(bases.size(), 3u);
-  EXPECT_EQ(bases[1].cols(), 0);
   for (const bool slow : {true, false}) {
-    const MatrixXd& basis = bases[slow ? 0 : 2];
+    const MatrixXd basis = invariant_subspace(a, [&](auto value) { return is_slow(value) == slow; });
     ASSERT_EQ(basis.cols(), slow ? 3 : 5);
     EXPECT_LT((basis.transpose() * basis - MatrixXd::Identity(basis.cols(), basis.cols())).norm(), 1e-13);
     EXPECT_LT((a * basis - basis * (basis.transpose() * a * basis)).norm(), 1e-13 * a.norm());
   }
+  EXPECT_EQ(invariant_subspace(a, [](auto) { return false; }).cols(), 0);
 }
 
 }  // namespace

@@ -232,39 +232,6 @@ TEST(ReducedModel, KeepsFreeMotions) {
   EXPECT_THROW(reduced(model, static_cast<int>(model.a.rows()) + 1), std::invalid_argument);
 }
 
-/// A thin arm in the plane of its hinge, with a load at its end. Nothing holds the hinge, which a damper brakes.
-LinearModel hinged_arm(double damping) {
-  scene::SceneDescription description = test::scene_of(R"(<robot name="arm"><link name="world"/>
-    <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 0 1"/>
-      <dynamics damping=")" + std::to_string(damping) + R"("/> </joint>
-    <link name="boom"> <beam elements="6"> <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.008"/>
-      <material young="70e9" poisson="0.33" density="2700"/> <damping ratio="0.005" frequency="3"/>
-      <hub at="start" mass="0.5" inertia="0.02 0.02 0.02"/> </beam> </link>
-    <joint name="grip" type="fixed"> <parent link="boom"/> <child link="load"/> <origin xyz="2 0 0"/> </joint>
-    <link name="load"> <inertial> <mass value="1"/>
-      <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
-  LinearRequest request;
-  request.inputs = {"effort:shoulder"};
-  request.outputs = {"position:load:y"};
-  return linearise(Simulation(std::move(description)), request);
-}
-
-// The arm's motions out of the plane decay slowly, and the motor moves none of them. Of the motions in the plane, only the
-// pole of the free hinge does not decay.
-TEST(ReducedModel, KeepsNothingThatDecaysOrThatNoInputMoves) {
-  const LinearModel model = hinged_arm(0.01);
-  const ReducedModel small = reduced(model, 6);
-  EXPECT_EQ(small.kept, 1);
-  ASSERT_EQ(small.model.a.rows(), 6);
-  const VectorXd& values = small.hankel_singular_values;
-  const double bound = 2 * values.tail(values.size() - 5).sum();
-  for (const double frequency : logarithmic(0.01, 1e4, 200)) {
-    const double whole = frequency_response(model, {frequency}).gains[0].norm();
-    EXPECT_LT(largest_error(model, small.model, {frequency}), bound + 1e-7 * whole) << frequency;
-  }
-}
-
 // ---------------------------------------------------------------- very thin beams
 
 constexpr double kYoung = 70e9, kDensity = 2700, kDamping = 1e-4;  // damping of strains [s]
