@@ -94,11 +94,18 @@ double effort_limit(const Model& model, const Actuator& actuator) {
 }
 
 /// Whether forces may jump at times that cannot be foreseen, and steps can find these.
+bool may_have_hits(const Model& model) {
+  return std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                     [](const Coordinate& c) { return c.limit.has_value(); }) ||
+         std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                     [](const auto& element) { return element->hits(); });
+}
+
 bool may_have_events(const Simulation& simulation) {
   if (scheme_of(simulation).tableau) return false;
   const Model& model = model_of(simulation);
   const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
-    return c.limit || c.friction > 0 || c.friction_coefficient > 0;
+    return c.friction > 0 || c.friction_coefficient > 0;
   });
   const bool by_drives = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const Actuator& a) {
     return a.drive.friction > 0 || a.drive.loss > 0 || (a.drive.gear && a.drive.gear->backlash > 0) ||
@@ -106,9 +113,7 @@ bool may_have_events(const Simulation& simulation) {
   });
   const bool by_slides =
       std::any_of(model.joints.begin(), model.joints.end(), [](const JointMap& joint) { return joint.leaving >= 0; });
-  const bool by_contacts = std::any_of(model.force_elements.begin(), model.force_elements.end(),
-                                       [](const auto& element) { return element->hits(); });
-  return by_joints || by_drives || by_slides || by_contacts;
+  return by_joints || by_drives || by_slides || may_have_hits(model);
 }
 
 }  // namespace
@@ -130,7 +135,8 @@ LocatedSteps::LocatedSteps(Simulation& simulation, const std::vector<double>& ce
     : simulation_(simulation),
       cells_(with_strikes_apart(simulation, cells)),
       step_of_scene_(step_of_constants(simulation)),
-      has_events_(may_have_events(simulation)) {
+      has_events_(may_have_events(simulation)),
+      has_hits_(has_events_ && may_have_hits(model_of(simulation))) {
   for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
 }
 
@@ -273,7 +279,7 @@ bool LocatedSteps::advance_through_cell(double end, RunWatcher& watcher, Accurat
   while ((rest = end - simulation_.time()) > kMissedTime * longest) {
     run.last = located_step(next_length(rest, longest), watcher);
     ++run.steps;
-    if (has_events_) follow_hit();
+    if (has_hits_) follow_hit();
     run.end = AccurateRun::End::Interrupted;
     if (!watcher.after_step(simulation_, run.last)) return false;
     run.end = AccurateRun::End::Failed;

@@ -67,7 +67,7 @@ class LocatedSteps {
   int level_ = kNoHit;  // in a hit, steps have the length step() / 2^level_
   int good_steps_ = 0;  // since the level has changed
   int events_ = 0;      // in this cell so far
-  bool has_events_, is_at_event_ = false;
+  bool has_events_, has_hits_, is_at_event_ = false;
   bool is_new_hit_ = false;  // no step of this hit has shown the level yet
   Snapshot before_;          // state before the step
 };

@@ -141,7 +141,7 @@ TEST(Hits, AreCornersForACompanion) {
     estimate = companion.follow(simulation);
     if (i % 120 != 0) continue;
     const double error = (simulation.probe_pose(0).position - hits.motions[0][static_cast<std::size_t>(i / 120)]).norm();
-    EXPECT_GE(estimate, error) << i;
+    EXPECT_GE(estimate + 1e-14, error) << i;  // round-off of a position of half a metre, over 120 steps
   }
 }
 
