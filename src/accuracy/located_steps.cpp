@@ -104,9 +104,8 @@ bool may_have_hits(const Model& model) {
 bool may_have_events(const Simulation& simulation) {
   if (scheme_of(simulation).tableau) return false;
   const Model& model = model_of(simulation);
-  const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
-    return c.friction > 0 || c.friction_coefficient > 0;
-  });
+  const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                                     [](const Coordinate& c) { return c.friction > 0 || c.friction_coefficient > 0; });
   const bool by_drives = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const Actuator& a) {
     return a.drive.friction > 0 || a.drive.loss > 0 || (a.drive.gear && a.drive.gear->backlash > 0) ||
            effort_limit(model, a) < Drive::kInfinity;

@@ -53,8 +53,8 @@ class StepConfiguration {
   const Model& model() const { return model_; }
   const Scheme& scheme() const { return scheme_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
-  const State& state() const { return *state_; }                     ///< at the beginning of the step
-  double step() const { return step_; }                              ///< [s]; 0: statics
+  const State& state() const { return *state_; }  ///< at the beginning of the step
+  double step() const { return step_; }           ///< [s]; 0: statics
   double end_time() const { return end_time_; }   ///< [s]
   const std::vector<NodePose>& begin() const { return begin_; }
   const std::vector<NodePose>& end() const { return end_; }

@@ -16,8 +16,8 @@ namespace {
 constexpr double kDoubtful = 0.75;
 /// Accelerations that are negligible [m/s^2, rad/s^2].
 constexpr double kStill = 1e-6;
-/// Number of steps that are checked.
-constexpr int kSteps = 2;
+/// Number of steps that are checked. An oscillation that steps do not resolve may look smooth over some of them.
+constexpr int kSteps = 6;
 
 /// The mass matrix of the states that are positions.
 Eigen::MatrixXd mass_of_states(const LinearModel& model) {

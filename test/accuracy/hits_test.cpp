@@ -39,8 +39,8 @@ std::string robot(const std::string& parts, const std::string& simulation) {
 const std::string kWeight = "<gravity xyz='0 -9.81 0'/>";
 
 Hits bouncing_ball() {
-  return {robot("<ground name='floor' normal='0 1 0'/>" + ball("b", "0.04", "0.3", "0.0012") + floating("b", "0 0.4 0") +
-                    "<contact first='b' second='floor' restitution='0.6' stiffness='2e4'/>",
+  return {robot("<ground name='floor' normal='0 1 0'/>" + ball("b", "0.04", "0.3", "0.0012") +
+                    floating("b", "0 0.4 0") + "<contact first='b' second='floor' restitution='0.6' stiffness='2e4'/>",
                 kWeight + "<initial link='b' linear='0.2 0 0'/><probe name='b' link='b'/>"),
           1.2,
           {{{0, 0.4, 0},
@@ -58,29 +58,29 @@ Hits bouncing_ball() {
 
 /// A pendulum that swings against a wall, and meets it anywhere in the steps.
 Hits pendulum_on_wall() {
-  return {robot("<ground name='wall' normal='1 0 0' offset='-0.05'/>" + ball("b", "0.05", "0.8", "0.0032", "0 -0.5 0") +
-                    "<joint name='h' type='continuous'><parent link='world'/><child link='b'/><axis xyz='0 0 1'/></joint>"
-                    "<contact first='b' second='wall' restitution='0.8' stiffness='3e4'/>",
-                kWeight + "<initial joint='h' position='0.7'/><probe name='b' link='b' at='0 -0.5 0'/>"),
-          1.5,
-          {{{0.322108844, -0.382421094, 0},
-            {0.267269871, -0.422571670, 0},
-            {0.101275444, -0.489635869, 0},
-            {0.089276315, -0.491965181, 0},
-            {0.222176908, -0.447925688, 0},
-            {0.263521354, -0.424919399, 0},
-            {0.207453473, -0.454931925, 0},
-            {0.063266760, -0.495981166, 0},
-            {0.084543224, -0.492800612, 0},
-            {0.186791204, -0.463798497, 0},
-            {0.212592639, -0.452553168, 0}}}};
+  return {
+      robot("<ground name='wall' normal='1 0 0' offset='-0.05'/>" + ball("b", "0.05", "0.8", "0.0032", "0 -0.5 0") +
+                "<joint name='h' type='continuous'><parent link='world'/><child link='b'/><axis xyz='0 0 1'/></joint>"
+                "<contact first='b' second='wall' restitution='0.8' stiffness='3e4'/>",
+            kWeight + "<initial joint='h' position='0.7'/><probe name='b' link='b' at='0 -0.5 0'/>"),
+      1.5,
+      {{{0.322108844, -0.382421094, 0},
+        {0.267269871, -0.422571670, 0},
+        {0.101275444, -0.489635869, 0},
+        {0.089276315, -0.491965181, 0},
+        {0.222176908, -0.447925688, 0},
+        {0.263521354, -0.424919399, 0},
+        {0.207453473, -0.454931925, 0},
+        {0.063266760, -0.495981166, 0},
+        {0.084543224, -0.492800612, 0},
+        {0.186791204, -0.463798497, 0},
+        {0.212592639, -0.452553168, 0}}}};
 }
 
 /// Two free balls that meet obliquely.
 Hits two_balls() {
   return {robot(ball("a", "0.08", "1", "0.004") + floating("a", "0 0 0") + ball("b", "0.06", "0.4", "0.0016") +
-                    floating("b", "0.5 0.05 0") +
-                    "<contact first='a' second='b' restitution='0.7' stiffness='2e4'/>",
+                    floating("b", "0.5 0.05 0") + "<contact first='a' second='b' restitution='0.7' stiffness='2e4'/>",
                 "<gravity xyz='0 0 0'/><initial link='a' linear='1.5 0 0'/><initial link='b' linear='-1 0 0'/>"
                 "<probe name='a' link='a'/><probe name='b' link='b'/>"),
           0.6,
@@ -127,8 +127,8 @@ TEST(Hits, KeepTheAccuracy) {
       }
 }
 
-/// The estimate of a companion contains a bound of what the steps over a hit may do: the jump of the velocity times half
-/// of the step, times the time since then. It holds against the same motion from scipy.
+/// The estimate of a companion contains a bound of what the steps over a hit may do: the jump of the velocity times
+/// half of the step, times the time since then. It holds against the same motion from scipy.
 TEST(Hits, AreCornersForACompanion) {
   const Hits hits = bouncing_ball();
   scene::SceneDescription scene = scene_of(hits.text);
@@ -140,8 +140,9 @@ TEST(Hits, AreCornersForACompanion) {
     ASSERT_TRUE(simulation.step().converged);
     estimate = companion.follow(simulation);
     if (i % 120 != 0) continue;
-    const double error = (simulation.probe_pose(0).position - hits.motions[0][static_cast<std::size_t>(i / 120)]).norm();
-    EXPECT_GE(estimate + 1e-14, error) << i;  // round-off of a position of half a metre, over 120 steps
+    const double error =
+        (simulation.probe_pose(0).position - hits.motions[0][static_cast<std::size_t>(i / 120)]).norm();
+    EXPECT_GE(estimate + 1e-12, error) << i;  // before the hit both are round-off of many steps
   }
 }
 

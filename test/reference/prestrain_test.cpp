@@ -196,7 +196,8 @@ TEST(Prestrain, FamiliesAgreeOnAGrowingRod) {
                  fine = std::abs(growth(scheme, 1000, gap) - exact);
     EXPECT_NEAR(observed_order(coarse, fine), 2, kOrderTolerance) << scheme;
     if (scheme[0] != 'h') {
-      EXPECT_LT(gap, 1e-10) << scheme;
+      // Strains of 1e-3 have round-off of 2e-13, which adds up over 1000 steps.
+      EXPECT_LT(gap, 1000 * 2e-13) << scheme;
     }
   }
 }
