@@ -143,7 +143,7 @@ class EquilibriumSearch {
       result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
   }
 
-  /// Steps that fail are halved.
+  /// Steps that fail are halved where there are beams. Rigid mechanisms have the descent.
   bool increase_loads(int load_steps) {
     const double longest = 1.0 / load_steps, shortest = std::ldexp(longest, -kMostHalvings);
     double step = longest;
@@ -156,7 +156,7 @@ class EquilibriumSearch {
         continue;
       }
       step = 0.5 * (factor - reached);
-      if (step < shortest || result_.reason == StepResult::Reason::NeverRests) return false;
+      if (step < shortest || descent_->is_rigid() || result_.reason == StepResult::Reason::NeverRests) return false;
       state_ = before;
     }
     return let_servos_integrate();
