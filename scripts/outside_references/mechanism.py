@@ -119,7 +119,8 @@ class Mechanism:
 
     def __init__(self, text):
         root = ElementTree.fromstring(text)
-        known = {"link", "joint", "loop_joint", "drive", "servo", "spring", "simulation", "parameter", "ground", "contact"}
+        known = {"link", "joint", "loop_joint", "drive", "servo", "spring", "simulation", "parameter", "ground",
+                 "contact"}
         for child in root:
             if child.tag not in known:
                 raise Refused(f"<{child.tag}>")

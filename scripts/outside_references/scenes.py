@@ -356,7 +356,8 @@ def thrown(name, vx=0.0, vy=0.0, turn=0.0):
 
 
 def contacts(rng):
-    """Hits of balls and boxes, of free bodies and of mechanisms. Stiffnesses are declared, except where steps are named."""
+    """Hits of balls and boxes, of free bodies and of mechanisms. Stiffnesses are declared, except where steps are
+    named."""
     r = rng.uniform
 
     def stiffness(mass):

@@ -156,7 +156,8 @@ class EquilibriumSearch {
         continue;
       }
       step = 0.5 * (factor - reached);
-      if (step < shortest || descent_->is_rigid() || result_.reason == StepResult::Reason::NeverRests) return false;
+      if (step < shortest || model_.stiffness_point_count == 0 || result_.reason == StepResult::Reason::NeverRests)
+        return false;
       state_ = before;
     }
     return let_servos_integrate();

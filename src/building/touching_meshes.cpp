@@ -9,7 +9,7 @@
 
 #include "building/loaded_library.h"
 #include "meshes/library.h"
-#include "scene/resource_path.h"
+#include "flexarm/scene/resource_path.h"
 
 namespace flexarm {
 namespace {

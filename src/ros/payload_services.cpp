@@ -14,7 +14,7 @@
 #include "flexarm/simulation/payloads.h"
 #include "messages/conversions.h"
 #include "node.h"
-#include "scene/resource_path.h"
+#include "flexarm/scene/resource_path.h"
 
 namespace flexarm::node {
 namespace {

@@ -11,7 +11,7 @@
 #include "math/number_text.h"
 #include "scene/limits.h"
 #include "scene/readers.h"
-#include "scene/resource_path.h"
+#include "flexarm/scene/resource_path.h"
 #include "scene/xml_document.h"
 
 namespace flexarm::scene {

@@ -1,4 +1,4 @@
-#include "scene/resource_path.h"
+#include "flexarm/scene/resource_path.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -73,7 +73,8 @@ class Chain:
         leaders = [k for k in range(len(self.joints)) if generator.random() > 0.15] or [0]
         for k, joint in enumerate(self.joints):
             if k not in leaders:
-                joint.master, joint.multiplier = int(generator.choice(leaders)), float(generator.choice([1, -1, 0.5, -2]))
+                joint.master = int(generator.choice(leaders))
+                joint.multiplier = float(generator.choice([1, -1, 0.5, -2]))
         self.free = leaders
         self.gravity = generator.normal(size=3)
         if style == 2:
@@ -177,7 +178,8 @@ class WithinLimits(unittest.TestCase):
     def test_wrist_that_turns_almost_freely_with_the_arm_before_it(self):
         """A yaw, a pitch and a twist: at zero pitch the axes of yaw and twist coincide. Equilibria form a curve, along
         which the potential changes only because the angles of the scene are rounded."""
-        joint = ('<joint name="%s" type="revolute"> <parent link="%s"/> <child link="%s"/> <origin xyz="%s" rpy="%s 0 0"'
+        joint = ('<joint name="%s" type="revolute"> <parent link="%s"/> <child link="%s"/> '
+                 '<origin xyz="%s" rpy="%s 0 0"'
                  '/> <axis xyz="0 0 1"/> <limit lower="%r" upper="%r" effort="0" velocity="9"/> </joint>')
         link = ('<link name="%s"> <inertial> <origin xyz="%s"/> <mass value="%s"/> <inertia ixx="1" ixy="0" ixz="0" '
                 'iyy="1" iyz="0" izz="1"/> </inertial> </link>')

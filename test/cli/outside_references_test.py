@@ -142,7 +142,7 @@ class ClosedForms(unittest.TestCase):
 
 class Contacts(unittest.TestCase):
     def test_restitution_at_any_speed(self):
-        """Without weight, a hit at any speed, with any mass and stiffness, gives back the declared part of the speed."""
+        """Without weight, a hit at any speed, with any mass and stiffness, gives back its part of the speed."""
         for speed, mass, stiffness, restitution in ((0.1, 1.0, 1e4, 0.5), (3.0, 0.2, 1e4, 0.2), (20.0, 5.0, 1e5, 0.9)):
             text = scenes.scene(scenes.ground() + scenes.ball("b", 0.1, mass) + scenes.free("b", 0.0, 0.1 + 0.1 * speed)
                                 + scenes.contact("b", "floor", restitution, stiffness),
@@ -155,7 +155,8 @@ class Contacts(unittest.TestCase):
         """Masses 1 and 3 at 1 and -2 m/s on one line, elastic: -3.5 and -0.5 m/s."""
         text = scenes.scene(scenes.ball("a", 0.1, 1.0) + scenes.free("a", 0.0, 0.0) + scenes.ball("b", 0.1, 3.0)
                             + scenes.free("b", 0.5, 0.0) + scenes.contact("a", "b", 1.0, 1e5),
-                            scenes.thrown("a", 1.0) + scenes.thrown("b", -2.0) + scenes.probe("a") + scenes.probe("b"), 0.0)
+                            scenes.thrown("a", 1.0) + scenes.thrown("b", -2.0) + scenes.probe("a") + scenes.probe("b"),
+                            0.0)
         times, points = run(text, 0.3, 100)
         speeds = (points[-1, :, 0] - points[-2, :, 0]) / (times[-1] - times[-2])
         np.testing.assert_allclose(speeds, [-3.5, -0.5], atol=1e-8)
@@ -223,7 +224,7 @@ class Program(unittest.TestCase):
                               check=False, universal_newlines=True)
 
     def test_there_are_enough_scenes(self):
-        """Each scene has a name of its own. At least 60 scenes have corners and an outside reference, 40 have contact."""
+        """Each scene has its own name. At least 60 scenes have corners and an outside reference, 40 have contact."""
         found = scenes.all_scenes()
         self.assertEqual(len({(scene.group, scene.name) for scene in found}), len(found))
         self.assertGreaterEqual(sum(scene.is_cornered and scene.is_rigid for scene in found), 60)

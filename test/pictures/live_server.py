@@ -7,7 +7,7 @@ import socket
 import struct
 import threading
 
-from page_maker import mesh_bytes, page
+from page_maker import SETTINGS, mesh_bytes, page
 
 KEY = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # of every WebSocket, RFC 6455
 
@@ -29,7 +29,7 @@ class LiveServer:
         self.socket = socket.create_server(("127.0.0.1", 0))
         self.url = f"http://127.0.0.1:{self.socket.getsockname()[1]}/"
         element = '<script type="application/json" class="flexarm-live">{"stream": "/stream"}</script>'
-        self.html = page([element]).encode()
+        self.html = page([element], SETTINGS).encode()
         threading.Thread(target=self.accept, daemon=True).start()
 
     def close(self):

@@ -342,7 +342,8 @@ def net(beams=500, sections=20, frames=60):
         descriptions.append({"link": k, "arc_lengths": list(arcs), "sections": rest_sections(arcs), "radius": 0.01})
     picture = {
         "name": "net", "title": f"{beams * sections} sections", "notes": [],
-        "extent": {"center": [0.2 * side, 0.2 * side, 0.4], "radius": 0.3 * side, "half": [0.2 * side, 0.2 * side, 0.1]},
+        "extent": {"center": [0.2 * side, 0.2 * side, 0.4], "radius": 0.3 * side,
+                   "half": [0.2 * side, 0.2 * side, 0.1]},
         "gravity": [0, 0, -9.81],
         "links": links, "meshes": [], "beams": descriptions, "joints": [], "probes": [], "floors": [], "arrows": [],
         "columns": [], "frames": frames, "clips": [], "still": None,

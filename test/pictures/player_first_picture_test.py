@@ -133,7 +133,8 @@ def test_long_names_can_be_read(browser, play):
     browser.click(".row:nth-child(3)")
     browser.click("#add-curve")
     browser.frame()
-    cut = browser.run("""return [...document.querySelectorAll("#tree .name, #column-list .name, .curve .name, #details-name")]
+    cut = browser.run("""return [...document.querySelectorAll(
+          "#tree .name, #column-list .name, .curve .name, #details-name")]
         .filter((e) => e.textContent.includes("suspension"))
         .map((e) => [e.textContent, e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0,
                      e.scrollHeight > e.clientHeight + 1 && e.clientHeight > 0])""")

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/resource_path.h"
+#include "flexarm/scene/resource_path.h"
 #include "scene/scene_text.h"
 
 namespace flexarm::scene::contact_files {
