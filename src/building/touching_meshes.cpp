@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "building/loaded_library.h"
-#include "meshes/library.h"
 #include "flexarm/scene/resource_path.h"
+#include "meshes/library.h"
 
 namespace flexarm {
 namespace {

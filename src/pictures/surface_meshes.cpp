@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "building/loaded_library.h"
-#include "meshes/library.h"
 #include "flexarm/scene/resource_path.h"
+#include "meshes/library.h"
 
 namespace flexarm::pictures {
 

@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "flexarm/scene/resource_path.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/payloads.h"
 #include "messages/conversions.h"
 #include "node.h"
-#include "flexarm/scene/resource_path.h"
 
 namespace flexarm::node {
 namespace {

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "flexarm/scene/resource_path.h"
 #include "math/number_text.h"
 #include "scene/limits.h"
 #include "scene/readers.h"
-#include "flexarm/scene/resource_path.h"
 #include "scene/xml_document.h"
 
 namespace flexarm::scene {
