@@ -55,7 +55,6 @@ std::string doubt_about_instant(const Simulation& simulation, const LinearModel&
   request.outputs = model.outputs;
   Simulation here = simulation.copy();
   LinearModel of_here = model;
-  // Check several steps, since an oscillation may go unnoticed in one.
   for (int n = 0; n < kSteps; ++n) {
     Simulation next = here.copy();
     if (!next.step().converged) return "";
