@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """Takes the block of config/examples/six_axis_pick.urdf and puts it down somewhere else.
 
-Parameter: ~to, where the middle of the block shall stand: x, y, z [m], by default on the shelf.
+pick.py [--to X Y Z]   # where the middle of the block shall stand [m], by default on the shelf
 
 It uses the actions of config/controllers.yaml, which a real arm has, too, and looks at the poses on sensors/tool and
 sensors/block, as by a camera. Angles of the joints are computed for a stiff arm; by how much the forearm's bending
 moves the hand, the camera tells. The exit status is 0 if the block stands where it should.
 """
 
+import argparse
 import collections
 import math
 import sys
@@ -15,6 +16,7 @@ import threading
 
 import actionlib
 import rospy
+from actionlib_msgs.msg import GoalStatus
 from flexarm.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal
 from flexarm.msg import GripperCommandAction, GripperCommandGoal
 from geometry_msgs.msg import PoseStamped
@@ -55,14 +57,19 @@ def joints_for(place, turn):
     return [yaw, axis_2, axis_3, 0.0, math.pi / 2 - axis_2 - axis_3, yaw - turn]
 
 
+def end_without(connection):
+    if rospy.is_shutdown() or connection.get_num_connections() == 0:
+        sys.exit("pick.py: the simulation ended")
+
+
 class Pose:
     """What the camera sees of one thing: its place, and its direction about the vertical."""
 
     def __init__(self, topic):
         self.changed = threading.Condition()
         self.seen = collections.deque()  # (time, place) of the last WINDOW
-        self.turn = 0.0
-        rospy.Subscriber(topic, PoseStamped, self.receive)
+        self.turn = None
+        self.subscriber = rospy.Subscriber(topic, PoseStamped, self.receive)
 
     def receive(self, message):
         time, at, turn = message.header.stamp.to_sec(), message.pose.position, message.pose.orientation
@@ -83,19 +90,29 @@ class Pose:
         with self.changed:
             self.seen.clear()
             while not self.stands():
-                if rospy.is_shutdown():
-                    sys.exit("pick.py: ended before the block was where it should be")
+                if self.turn is not None:  # it has been seen
+                    end_without(self.subscriber)
                 self.changed.wait(0.1)
             return self.seen[-1][1]
 
 
 def client_of(name, action):
-    client = actionlib.SimpleActionClient(name, action)
+    client = actionlib.ActionClient(name, action)
     while not client.wait_for_server(rospy.Duration(5)):
-        if rospy.is_shutdown():
-            sys.exit(1)
         rospy.logwarn("waiting for the action %s", name)
     return client
+
+
+def outcome(client, goal):
+    """Send a goal, wait for its end, and return its handle. (SimpleActionClient can miss the end of a goal that ends at
+    once.)"""
+    changed = threading.Event()
+    handle = client.send_goal(goal, lambda _: changed.set())
+    while handle.get_comm_state() != actionlib.CommState.DONE:
+        end_without(client.pub_goal)
+        changed.wait(0.1)
+        changed.clear()
+    return handle
 
 
 class Arm:
@@ -116,9 +133,9 @@ class Arm:
                                      time_from_start=rospy.Duration(max(0.5, 15 / 8 * way / SPEED)))
         goal = FollowJointTrajectoryGoal()
         goal.trajectory.joint_names, goal.trajectory.points = names, [point]
-        self.arm.send_goal_and_wait(goal)
-        if self.arm.get_state() != actionlib.GoalStatus.SUCCEEDED:
-            sys.exit("pick.py: the arm did not get there: " + self.arm.get_goal_status_text())
+        end = outcome(self.arm, goal)
+        if end.get_goal_status() != GoalStatus.SUCCEEDED:
+            sys.exit("pick.py: the arm did not get there: " + end.get_goal_status_text())
         self.commanded = place
 
     def bring(self, thing, place, tolerance):
@@ -138,10 +155,10 @@ class Arm:
         """Return whether the fingers got there; otherwise they have gripped something."""
         goal = GripperCommandGoal()
         goal.command.position, goal.command.max_effort = position, FORCE
-        self.gripper.send_goal_and_wait(goal)
-        result = self.gripper.get_result()
-        if not (result.reached_goal or result.stalled):
-            sys.exit("pick.py: the gripper did not move: " + self.gripper.get_goal_status_text())
+        end = outcome(self.gripper, goal)
+        result = end.get_result()
+        if not result or not (result.reached_goal or result.stalled):
+            sys.exit("pick.py: the gripper did not move: " + end.get_goal_status_text())
         return result.reached_goal
 
 
@@ -150,8 +167,11 @@ def above(place, height=ABOVE):
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--to", nargs=3, type=float, default=[0.5, 0.3, 0.34], metavar=("X", "Y", "Z"),
+                        help="where the middle of the block shall stand [m] (on the shelf: 0.5 0.3 0.34)")
+    to = parser.parse_args(rospy.myargv()[1:]).to
     rospy.init_node("pick")
-    to = rospy.get_param("~to", [0.5, 0.3, 0.34])
     for place in (to, above(to)):
         joints_for(place, 0)  # ends the program if it is out of reach
     arm, tool, block = Arm(), Pose("sensors/tool"), Pose("sensors/block")
@@ -186,4 +206,4 @@ if __name__ == "__main__":
     try:
         main()
     except rospy.ROSInterruptException:
-        sys.exit("pick.py: ended before the block was where it should be")
+        sys.exit("pick.py: the simulation ended")
