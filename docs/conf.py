@@ -56,8 +56,8 @@ VALIDATION = sorted(name[:-3] for name in os.listdir(os.path.join(ROOT, "docs", 
 CONTENTS = {
     "README": [
         ("Use", """docs/install docs/guide docs/tutorial_flexible_link docs/tutorial_servo docs/from_gazebo
-            docs/tutorial_ros
-            docs/tutorial_moveit docs/tutorial_pick docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep
+            docs/tutorial_ros docs/tutorial_moveit docs/tutorial_pick
+            docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep
             docs/payloads docs/identify docs/linearise docs/show docs/results docs/plot docs/film docs/portability"""),
         ("Reference", """docs/scene_format docs/ros docs/rviz docs/web docs/troubleshooting docs/command_line
             docs/python docs/python_api docs/cpp_api docs/schemes"""),

@@ -38,12 +38,13 @@ SPEED = 0.8  # rad/s, largest speed of a joint
 ROUGH, EXACT = 0.01, 0.0005  # m, by how much the hand may miss a place on its way, and one where it grips or lets go
 REST, WINDOW = 0.0001, 0.3  # m, s: what moves less than this in this time stands
 FAR = 0.003  # m, by how much the block may miss its place in the end
+LARGEST = 0.05  # m, offset of the hand by the forearm's bending; with a larger one, something else has happened
 ATTEMPTS = 5
 
 
 def joints_for(place, turn):
-    """The joints' angles with which a stiff arm has its fingers at a place, pointing down, and closes them across the
-    direction `turn` about the vertical."""
+    """Return the joints' angles with which a stiff arm holds its fingers to a place, pointing down, parallel to a block
+    that is turned by `turn` about the vertical [rad]."""
     x, y, z = place
     yaw = math.atan2(y, x)
     r, h = math.hypot(x, y) - SHOULDER[0], z + HAND - SHOULDER[1]  # the wrist's centre, seen from axis 2
@@ -57,9 +58,13 @@ def joints_for(place, turn):
     return [yaw, axis_2, axis_3, 0.0, math.pi / 2 - axis_2 - axis_3, yaw - turn]
 
 
+def give_up():
+    sys.exit("pick.py: ended before the block was where it should be")
+
+
 def end_without(connection):
     if rospy.is_shutdown() or connection.get_num_connections() == 0:
-        sys.exit("pick.py: the simulation ended")
+        give_up()
 
 
 class Pose:
@@ -74,6 +79,8 @@ class Pose:
     def receive(self, message):
         time, at, turn = message.header.stamp.to_sec(), message.pose.position, message.pose.orientation
         with self.changed:
+            if self.seen and time < self.seen[-1][0]:  # the clock was set back
+                self.seen.clear()
             self.seen.append((time, (at.x, at.y, at.z)))
             while self.seen[0][0] < time - WINDOW:
                 self.seen.popleft()
@@ -86,7 +93,7 @@ class Pose:
         return all(max(numbers) - min(numbers) < REST for numbers in zip(*(place for _, place in self.seen)))
 
     def at_rest(self):
-        """The place [m], as soon as the thing stands."""
+        """Return the place [m], as soon as the thing stands."""
         with self.changed:
             self.seen.clear()
             while not self.stands():
@@ -99,6 +106,8 @@ class Pose:
 def client_of(name, action):
     client = actionlib.ActionClient(name, action)
     while not client.wait_for_server(rospy.Duration(5)):
+        if rospy.is_shutdown():
+            give_up()
         rospy.logwarn("waiting for the action %s", name)
     return client
 
@@ -128,7 +137,7 @@ class Arm:
         ends = joints_for(place, self.turn)
         way = max(abs(end - state.position[state.name.index(name)]) for name, end in zip(names, ends))
         rest = [0.0] * len(names)
-        # With velocities and accelerations, the way is a quintic, which is 15/8 times as fast in its middle as on average.
+        # With velocities and accelerations, the way is a quintic, whose middle is 15/8 times as fast as its average.
         point = JointTrajectoryPoint(positions=ends, velocities=rest, accelerations=rest,
                                      time_from_start=rospy.Duration(max(0.5, 15 / 8 * way / SPEED)))
         goal = FollowJointTrajectoryGoal()
@@ -144,6 +153,8 @@ class Arm:
         if self.commanded:
             offset = [a - b for a, b in zip(self.commanded, thing.at_rest())]
         for _ in range(ATTEMPTS):
+            if math.hypot(*offset) > LARGEST:
+                sys.exit("pick.py: something else has moved the arm, or it has lost the block")
             self.move([a + b for a, b in zip(place, offset)])
             missing = [a - b for a, b in zip(place, thing.at_rest())]
             if math.hypot(*missing) < tolerance:
@@ -196,8 +207,9 @@ def main():
     arm.bring(block, above(to, GAP), EXACT)
     arm.grip(0.0)
     arm.bring(tool, above(to), ROUGH)
-    missing = math.dist(block.at_rest(), to)
-    rospy.loginfo("the block stands at %.4f %.4f %.4f, %.1f mm from where it should be", *block.at_rest(), 1e3 * missing)
+    end = block.at_rest()
+    missing = math.dist(end, to)
+    rospy.loginfo("the block stands at %.4f %.4f %.4f, %.1f mm from where it should be", *end, 1e3 * missing)
     if missing > FAR:
         sys.exit("pick.py: this is too far")
 
@@ -206,4 +218,4 @@ if __name__ == "__main__":
     try:
         main()
     except rospy.ROSInterruptException:
-        sys.exit("pick.py: the simulation ended")
+        give_up()
