@@ -6,7 +6,8 @@ show_in_rviz.py [RVIZ-ARGUMENT...]
 Fixed frame, camera and grid follow the simulator's parameters flexarm/view/...; grounds have grids of their own. The
 displays are those of config/flexarm.rviz. Of the URDF, rviz draws only the rigid links, since the <visual> of a
 flexible link would stay straight beside the bent beam. For this, the parameter rigid_links_description gets a URDF
-without those. There, shapes without a colour are grey as in pages: rviz would make them red. If no link has a shape or a mass, the frames are shown.
+without those. There, shapes without a colour are grey as in pages: rviz would make them red. If no link
+has a shape or a mass, the frames are shown.
 """
 
 import signal
