@@ -6,7 +6,8 @@ show_in_rviz.py [RVIZ-ARGUMENT...]
 Fixed frame, camera and grid follow the simulator's parameters flexarm/view/...; grounds have grids of their own. The
 displays are those of config/flexarm.rviz. Of the URDF, rviz draws only the rigid links, since the <visual> of a
 flexible link would stay straight beside the bent beam. For this, the parameter rigid_links_description gets a URDF
-without those. If no link has a shape or a mass, the frames are shown.
+without those. There, shapes without a colour are grey as in pages: rviz would make them red. If no link
+has a shape or a mass, the frames are shown.
 """
 
 import signal
@@ -34,6 +35,7 @@ DISTANCE = 3.6  # of the camera from the centre; its angle of view is 45 degrees
 LEGEND = 0.25  # how far the camera looks past the centre, towards the legend
 GRID = 1.2  # half of its length
 CELLS = 10  # of the grid in the scene's diameter, about
+GREY = "0.56 0.6 0.66 1"  # of shapes without a colour
 
 
 def wait_for_view():
@@ -47,12 +49,16 @@ def wait_for_view():
 
 
 def rigid_links(description):
-    """The URDF without the shapes of flexible links."""
+    """The URDF without the shapes of flexible links, and with a colour for each other shape."""
     robot = xml.etree.ElementTree.fromstring(description)
     for link in robot.findall("link"):
         if link.find("beam") is not None:
             for shape in link.findall("visual") + link.findall("collision"):
                 link.remove(shape)
+        for shape in link.findall("visual"):
+            if shape.find("material") is None:  # a mesh with materials of its own keeps them
+                material = xml.etree.ElementTree.SubElement(shape, "material", name="flexarm_grey")
+                xml.etree.ElementTree.SubElement(material, "color", rgba=GREY)
     return xml.etree.ElementTree.tostring(robot, encoding="unicode")
 
 

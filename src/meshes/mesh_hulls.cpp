@@ -19,9 +19,14 @@ void refuse_lfs_pointer(const std::string& path) {
   if (is_lfs_pointer(beginning)) throw std::runtime_error(kLfsPointerText);
 }
 
+void keep_axes(Assimp::Importer& importer) {
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+}
+
 std::vector<Polytope> hulls_of_file(const std::string& path, const Vector3& scale) {
   refuse_lfs_pointer(path);
   Assimp::Importer importer;
+  keep_axes(importer);
   importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, true);  // else all meshes would be merged
   const aiScene* const file = importer.ReadFile(path, aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
   if (!file) throw std::runtime_error(importer.GetErrorString());

@@ -6,10 +6,18 @@
 
 #include "contact/polytope.h"
 
+namespace Assimp {
+class Importer;
+}
+
 namespace flexarm::meshes {
 
 /// The largest number of corners of a hull. Each corner is a contact point.
 constexpr std::size_t kMostCorners = 64;
+
+/// Lets Collada files keep the axes that they are written in, as URDF means it and rviz does. Otherwise Assimp turns
+/// those with `<up_axis>Z_UP</up_axis>` so that y is up.
+void keep_axes(Assimp::Importer& importer);
 
 /// @throws std::runtime_error that says so if Git LFS has not fetched the file yet.
 void refuse_lfs_pointer(const std::string& path);

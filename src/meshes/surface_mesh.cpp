@@ -46,6 +46,7 @@ void add_node(const aiScene& file, const aiNode& node, const aiMatrix4x4& placem
 SurfaceMesh surface_of_file(const std::string& path, const Vector3& scale) {
   refuse_lfs_pointer(path);
   Assimp::Importer importer;
+  keep_axes(importer);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCrease);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const unsigned steps = aiProcess_Triangulate | aiProcess_DropNormals | aiProcess_GenSmoothNormals |

@@ -16,11 +16,11 @@ namespace {
 
 // Lengths per radius of the scene.
 constexpr double kDistance = 1.4;  ///< from the scene's centre
-constexpr double kBarCentre = 0.75, kHalfHeight = 0.18;
+constexpr double kBarCentre = 0.75, kHalfHeight = 0.12;
 constexpr double kBarRadius = 0.018;
-constexpr double kLegendTextHeight = 0.06;
-constexpr double kTextDistance = 0.15;  ///< from the bar
-constexpr double kLine = 0.1;           ///< from one line of text to the next
+constexpr double kLegendTextHeight = 0.055;
+constexpr double kTextDistance = 0.14;  ///< from the bar
+constexpr double kLine = 0.08;          ///< from one line of text to the next
 
 constexpr const char* kName = "legend";
 

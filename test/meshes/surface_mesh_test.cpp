@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+
+#include "meshes/mesh_hulls.h"
 
 namespace flexarm::meshes {
 namespace {
@@ -75,6 +78,41 @@ TEST_F(SurfaceOfFile, IsReadAndScaled) {
     EXPECT_EQ(mesh.triangles.size(), 4u) << name;
     EXPECT_NEAR(volume(mesh), 2 / 6.0, 1e-6) << name;  // single precision
     for (const SurfaceMesh::Vertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.normal.norm(), 1, 1e-6) << name;
+  }
+}
+
+/// The tetrahedron with edges of 1, 2 and 3 m along x, y and z, in millimetres. `up`: the axis that the file calls up.
+std::string collada(const std::string& up) {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.001" name="millimeter"/><up_axis>)" +
+         up + R"(</up_axis></asset>
+<library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="a" count="12">0 0 0 1000 0 0 0 2000 0 0 0 3000</float_array>
+<technique_common><accessor source="#a" count="4" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+</accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+// Meshes of robots have z up. Their axes are those of the file, whichever one it calls up, as in rviz.
+TEST_F(SurfaceOfFile, ColladaKeepsItsAxes) {
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
+    const std::string path = write(std::string(up) + ".dae", collada(up));
+    Eigen::AlignedBox3d surface, body;
+    for (const SurfaceMesh::Vertex& vertex : surface_of_file(path, Vector3::Ones()).vertices)
+      surface.extend(vertex.position);
+    const std::vector<Polytope> hulls = hulls_of_file(path, Vector3::Ones());
+    ASSERT_EQ(hulls.size(), 1U);
+    for (const Vector3& corner : hulls.front().corners) body.extend(corner);
+    for (const Eigen::AlignedBox3d& box : {surface, body}) {
+      EXPECT_LT(box.min().norm(), 1e-6) << up;  // single precision
+      EXPECT_LT((box.max() - Vector3(1, 2, 3)).norm(), 1e-5) << up;
+    }
   }
 }
 

@@ -387,6 +387,26 @@ TEST_F(Markers, LegendIsBesideAllThatTheArmReaches) {
   }
 }
 
+// With all that it can have, the legend is lower than 60 % of what the arm reaches.
+TEST_F(Markers, LegendIsLow) {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
+  step(1);
+  const pictures::SceneExtent extent = pictures::scene_extent(simulation_);
+  double lowest = 1, highest = -1;
+  int texts = 0;
+  for (const Marker& marker : shown(messages).markers) {
+    if (marker.ns != "legend" || marker.type != Marker::TEXT_VIEW_FACING) continue;
+    const double half = 0.5 * marker.scale.z / extent.radius, height = place_in_picture(marker, extent).second;
+    lowest = std::min(lowest, height - half);
+    highest = std::max(highest, height + half);
+    ++texts;
+  }
+  EXPECT_GE(texts, 8);  // title, three strains, force, moment, two or more kinds of arrows
+  EXPECT_LT(highest - lowest, 1.2);
+}
+
 TEST_F(Markers, ShapesThatCannotBeReadAreToldOfOnceAndTheTubeStays) {
   scene::SceneBuilder b = arm();
   scene::LinkDescription& boom = b.scene.links.back();

@@ -28,7 +28,7 @@ def test_the_box_around_what_moves_fills_the_picture(browser, play, half, size):
         browser.frame()
         part = np.array([browser.run("return flexarm.project(arguments[0])", corner)
                          for corner in corners(run.picture["extent"])]) / size_of(browser)
-        assert (0 <= part).all() and (part <= 1).all()
+        assert (0.04 < part).all() and (part < 0.96).all()  # marks at the edge need room, too
         assert np.max(part.max(axis=0) - part.min(axis=0)) > 0.6
 
 

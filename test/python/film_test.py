@@ -243,6 +243,8 @@ def test_times_of_frames():
     assert times([run], "--rate", "2", "--speed", "2", "--from", "2") == [2.0, 3.0]
     assert times([run], "--rate", "2", "--until", "1.4", "--repeat", "2") == [1.0, 1.0]
     assert times([run, {"start": 0.0, "end": 1.5, "clips": []}], "--rate", "1") == [0.0, 1.0, 2.0, 3.0]
+    tenths = {"start": 0.0, "end": 2.0, "clips": []}
+    assert times([tenths], "--rate", "10") == [k / 10 for k in range(21)]  # the nearest numbers: no sums of 0.1
     assert times([run], "-o", "a.png") == [1.0] and times([run], "-o", "a.png", "--at", "3.0000000001") == [3.0]
     clips = [{"name": "1st", "start": 1.0, "end": 1.9}, {"name": "2nd", "start": 2.0, "end": 3.0}]
     modes = [{"start": 0.0, "end": 9.0, "clips": []}, {"start": 1.0, "end": 3.0, "clips": clips}]

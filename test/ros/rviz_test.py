@@ -98,6 +98,14 @@ class Rviz(unittest.TestCase):
         self.assertEqual([child.tag for child in rigid], ["visual", "collision"])
         self.assertEqual([child.tag for child in flexible], ["beam"])
 
+    def test_shapes_without_a_colour_are_grey(self):
+        """rviz would make them red, a colour that looks like a warning."""
+        text = show_in_rviz.rigid_links(
+            "<robot name='r'><link name='a'><visual><material name='blue'/></visual><visual/></link></robot>")
+        own, grey = xml.etree.ElementTree.fromstring(text).findall("link/visual/material")
+        self.assertEqual((own.get("name"), len(own)), ("blue", 0))
+        self.assertEqual(grey.find("color").get("rgba"), show_in_rviz.GREY)
+
 
 if __name__ == "__main__":
     rospy.init_node("rviz_test")

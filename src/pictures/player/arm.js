@@ -20,6 +20,8 @@
       this.material = new THREE.MeshPhongMaterial({
         vertexColors: THREE.VertexColors, shininess: 24, specular: 0x1c1c1c, opacity: alpha, transparent: alpha < 1,
         depthWrite: alpha === 1, side: isClosed ? THREE.FrontSide : THREE.DoubleSide,
+        // A little behind lines and grounds in the same plane, which would flicker.
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
       });
       this.mesh = new THREE.Mesh(surface.geometry(), this.material);
       this.mesh.userData.part = this;

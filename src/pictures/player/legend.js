@@ -2,7 +2,7 @@
 (function (P) {
   "use strict";
 
-  const TICKS = 4;
+  const TICKS = 3;  // about; the bar is low
 
   // {title, stops, ticks} of a quantity, or null if no beam has it; a tick has its part of the bar's height and its
   // number.

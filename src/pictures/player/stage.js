@@ -4,7 +4,8 @@
 
   const VIEW_ANGLE = 35;                     // vertical [degrees]
   const START_DIRECTION = [0.55, -0.75, 0.36];  // from the scene to the camera, if up is z
-  const FIT = 1.04, FAR = 100;  // per radius of what is shown
+  const FILLED = 0.9;  // of the picture by what moves; marks and arrows at its edge need the rest
+  const FAR = 100;     // per radius of what is shown
   const ACROSS = 1.2;  // the best ratio of a run's width to its height
   const NEAR = 9;      // so far from the pointer a joint is found [CSS pixels]
 
@@ -84,7 +85,7 @@
     }
     // From where the camera, which looks at the centre, sees the whole sphere or the whole box around what moves.
     fitDistance() {
-      const { radius, half } = this.extent, vertical = Math.tan(this.camera.fov * Math.PI / 360);
+      const { radius, half } = this.extent, vertical = FILLED * Math.tan(this.camera.fov * Math.PI / 360);
       const slopes = [vertical * this.aspect, vertical], inverse = this.camera.quaternion.clone().conjugate();
       const bySphere = radius / Math.sin(Math.atan(Math.min(...slopes)));
       let byBox = 0;
@@ -93,7 +94,7 @@
         corner.applyQuaternion(inverse);
         byBox = Math.max(byBox, corner.z + Math.abs(corner.x) / slopes[0], corner.z + Math.abs(corner.y) / slopes[1]);
       }
-      return FIT * Math.min(bySphere, byBox);
+      return Math.min(bySphere, byBox);
     }
     startDirection() {
       const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.up);

@@ -113,7 +113,8 @@ def frame_times(arguments, runs):
     # The end of a clip is its start, so a clip that is played again must not have both.
     is_loop = is_clip and begin == start and stop == end
     count = max(round((stop - begin) / step), 1) if is_loop else math.floor((stop - begin) / step + 1e-6) + 1
-    return [min(begin + k * step, stop) for k in range(count)] * arguments.repeat
+    # Not k * step, whose factor has round-off: frame 3 of 10 per second is at 0.3 s, as the row is.
+    return [min(begin + k * arguments.speed / arguments.rate, stop) for k in range(count)] * arguments.repeat
 
 
 # ---------------------------------------------------------------- the film
