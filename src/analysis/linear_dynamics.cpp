@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "analysis/falling.h"
+#include "analysis/linearised_motion.h"
 #include "math/least_squares.h"
 #include "math/picked.h"
 #include "math/so3.h"
@@ -301,6 +302,17 @@ void LinearDynamics::assemble() {
                         stretched.by_rates * motion_.first + stretched.by_places * motion_.value);
   residual_ = unknowns.transpose() * system_.residual().head(count) +
               motion_.value.bottomRows(coordinates).transpose() * force.tail(coordinates);
+}
+
+Eigen::VectorXd LinearDynamics::stiffness_round_off() const {
+  Eigen::VectorXd round_off = Eigen::VectorXd::Zero(size());
+  const Eigen::Index count = maps_.columns();
+  const Eigen::MatrixXd terms = tangent_.topLeftCorner(count, count).cwiseAbs();
+  for (Eigen::Index i = 0; i < allowed_.value.cols(); ++i) {
+    const Eigen::VectorXd moved = (unknowns_ * allowed_.value.col(i)).cwiseAbs();
+    if ((moved.array() > 0).count() > 6) round_off[i] = kStiffnessRoundOff * moved.dot(terms * moved);
+  }
+  return round_off;
 }
 
 void LinearDynamics::move(const Eigen::VectorXd& increment) {

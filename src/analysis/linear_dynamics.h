@@ -45,6 +45,9 @@ class LinearDynamics {
   const Eigen::MatrixXd& mass() const { return mass_; }
   const Eigen::MatrixXd& damping() const { return damping_; }  ///< gyroscopic terms included
   const Eigen::MatrixXd& stiffness() const { return stiffness_; }
+  /// Round-off of the diagonal of the stiffness for coordinates that move whole bodies, whose strains cancel; 0 for
+  /// others.
+  Eigen::VectorXd stiffness_round_off() const;
   /// The force by which the reference is out of balance. It is zero except for driven coordinates, where it is the
   /// driving effort.
   const Eigen::VectorXd& residual() const { return residual_; }

@@ -2,16 +2,19 @@
 /// Invariant subspaces of matrices. In a file of its own, since Eigen's Schur decomposition takes long to compile.
 
 #include <complex>
-#include <functional>
+#include <vector>
 
 #include <Eigen/Core>
 
 namespace flexarm {
 
-/// Returns an orthonormal basis of the invariant subspace of a matrix that belongs to the eigenvalues that are
-/// `wanted`. `wanted` must be the same for both eigenvalues of a conjugate pair.
+/// Bases of two invariant subspaces of a matrix, each of them orthonormal. Together they span the whole space.
+struct InvariantSubspaces {
+  Eigen::MatrixXd wanted, others;
+};
+/// Splits the eigenvalues of a matrix. Those next to the `wanted` ones, as many as these, are in the first subspace.
+/// `wanted` must contain both eigenvalues of each conjugate pair.
 /// @throws std::runtime_error if the eigenvalues are not found
-Eigen::MatrixXd invariant_subspace(const Eigen::MatrixXd& matrix,
-                                   const std::function<bool(std::complex<double>)>& wanted);
+InvariantSubspaces invariant_subspaces(const Eigen::MatrixXd& matrix, const std::vector<std::complex<double>>& wanted);
 
 }  // namespace flexarm

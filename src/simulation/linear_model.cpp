@@ -27,6 +27,9 @@ using Kind = LinearPort::Kind;
 
 /// An imaginary part that is smaller than this part of |pole| is round-off.
 constexpr double kReal = 1e-12;
+bool is_real(std::complex<double> pole) {
+  return std::abs(pole.imag()) <= kReal * std::abs(pole);
+}
 /// Sizes relative to the largest pole. Poles below kLeastKnown have no correct digits; poles above kAlike have nearly
 /// all.
 constexpr double kLeastKnown = 1e-12, kAlike = 1e-5;
@@ -173,6 +176,7 @@ LinearModel equations(const Simulation& simulation, const LinearDynamics& dynami
   out.mass = dynamics.mass();
   out.damping = dynamics.damping();
   out.stiffness = dynamics.stiffness();
+  out.stiffness_round_off = dynamics.stiffness_round_off();
   out.residual = dynamics.residual();
   out.left_out = left_out(model_of(simulation), state_of(simulation));
   return out;
@@ -243,6 +247,37 @@ Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
   return fast;
 }
 
+/// Rounds poles to 0 that are 0 within round-off. A motion without stiffness has the poles 0 and -d, where d is its
+/// damping per mass. Round-off e of its stiffness per mass makes these the roots of p^2 + d p + e.
+class ZeroPoles {
+ public:
+  ZeroPoles(const LinearModel& model, const ScaledStates& scaled) : zero_(scaled.zero) {
+    if (scaled.places.empty()) return;
+    mass_ = picked(model.mass, scaled.places, scaled.places);
+    damping_ = picked(model.damping, scaled.places, scaled.places);
+    if (model.stiffness_round_off.size() > 0)
+      round_off_ = picked_rows(model.stiffness_round_off, scaled.places).cwiseSqrt();
+    else
+      round_off_ = VectorXd::Zero(mass_.rows());
+  }
+  std::complex<double> rounded(const Pole& pole) const {
+    const std::complex<double> value(pole.value.real(), is_real(pole.value) ? 0 : pole.value.imag());
+    if (mass_.size() == 0) return value;
+    const Eigen::VectorXcd motion = pole.mode.head(mass_.rows());
+    const std::complex<double> mass = motion.dot(mass_ * motion), damping = motion.dot(damping_ * motion) / mass;
+    const double size = std::abs(value), other = std::abs(value + damping);
+    // The larger root is known, unless round-off alone separates the two.
+    if (size > other && std::abs(damping) > 0.5 * size) return value;
+    const double assembled = round_off_.dot(motion.cwiseAbs());
+    return size * other <= zero_ * zero_ + assembled * assembled / std::abs(mass) ? 0 : value;
+  }
+
+ private:
+  double zero_;
+  MatrixXd mass_, damping_;  // of the positions; empty if they are not known
+  VectorXd round_off_;       // square root of the round-off of the diagonal of the stiffness
+};
+
 }  // namespace
 
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
@@ -291,9 +326,11 @@ std::vector<Pole> poles(const LinearModel& model) {
   const ScaledStates scaled = scaled_states(model);
   const Eigenpairs pairs = eigenpairs_of_all_sizes(scaled.a);
   const Eigen::MatrixXcd modes = scaled.basis * pairs.vectors;
+  const ZeroPoles zeros(model, scaled);
   for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
     Pole pole{pairs.values[i], 0, modes.col(i)};
-    if (pole.value.imag() < -kReal * std::abs(pole.value)) continue;
+    if (pole.value.imag() < 0 && !is_real(pole.value)) continue;
+    pole.value = zeros.rounded(pole);
     Eigen::Index state = 0;
     pole.mode.head(model.positions).cwiseAbs().maxCoeff(&state);
     pole.state = static_cast<int>(state);

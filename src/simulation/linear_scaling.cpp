@@ -164,6 +164,9 @@ ScaledStates scaled_states(const LinearModel& model) {
   ScaledStates out;
   if (const std::optional<Shapes> modes = shapes_of(model)) {
     out = by_modes(model, *modes);
+    std::vector<Index> positions(static_cast<std::size_t>(model.positions));
+    std::iota(positions.begin(), positions.end(), 0);
+    out.places = places_of(model, positions);
   } else {
     out.a = model.a;
     out.b = model.b;

@@ -12,6 +12,8 @@ struct ScaledStates {
   Eigen::MatrixXd basis, inverse;
   /// Poles with a smaller |pole| are 0 within round-off [1/s]. 0: there are no such poles; infinite: not known.
   double zero = 0;
+  /// For each position state, its index among the model's coordinates. Empty if states are not scaled by modes.
+  std::vector<Eigen::Index> places;
 };
 /// Scales by the modes of mass and stiffness. These need not be the modes of the model itself, since any scaling gives
 /// the same model. If a model has no such matrices for its states, such as a reduced one, its states are only balanced.

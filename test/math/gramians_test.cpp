@@ -2,6 +2,7 @@
 #include "math/gramians.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "math/invariant_subspace.h"
 
@@ -37,16 +38,22 @@ TEST(Gramians, SolveTheEquationsOfLyapunov) {
   EXPECT_LT((a.transpose() * q + q * a + c.transpose() * c).norm(), round_off * a.norm() * q.norm());
 }
 
-TEST(InvariantSubspace, IsMappedIntoItself) {
+TEST(InvariantSubspaces, AreMappedIntoThemselves) {
   const MatrixXd a = decaying_matrix();
-  const auto is_slow = [](std::complex<double> value) { return value.real() > -0.6; };
-  for (const bool slow : {true, false}) {
-    const MatrixXd basis = invariant_subspace(a, [&](auto value) { return is_slow(value) == slow; });
-    ASSERT_EQ(basis.cols(), slow ? 3 : 5);
+  std::vector<std::complex<double>> slow;
+  for (const std::complex<double> value : a.eigenvalues())
+    if (value.real() > -0.6) slow.push_back(value + 1e-9);
+  ASSERT_EQ(slow.size(), 3u);
+  const auto [wanted, others] = invariant_subspaces(a, slow);
+  for (const MatrixXd& basis : {wanted, others}) {
     EXPECT_LT((basis.transpose() * basis - MatrixXd::Identity(basis.cols(), basis.cols())).norm(), 1e-13);
     EXPECT_LT((a * basis - basis * (basis.transpose() * a * basis)).norm(), 1e-13 * a.norm());
   }
-  EXPECT_EQ(invariant_subspace(a, [](auto) { return false; }).cols(), 0);
+  ASSERT_EQ(wanted.cols(), 3);
+  for (const std::complex<double> value : (wanted.transpose() * a * wanted).eigenvalues())
+    EXPECT_GT(value.real(), -0.6);
+  EXPECT_EQ(others.cols(), 5);
+  EXPECT_EQ(invariant_subspaces(a, {}).wanted.cols(), 0);
 }
 
 }  // namespace

@@ -219,6 +219,15 @@ TEST(ReducedModel, ErrorIsWithinItsBound) {
   }
 }
 
+/// Relative round-off of a gain at this frequency [Hz] of a model with a hinge that nothing holds.
+/// Round-off of its stiffness counts beside (2 pi frequency)^2 times its inertia. Reduced models have no such
+/// stiffness.
+double round_off_of_free_hinge(const LinearModel& model, const std::string& hinge, double frequency) {
+  const auto found = std::find(model.coordinates.begin(), model.coordinates.end(), hinge);
+  const auto place = found - model.coordinates.begin();
+  return model.stiffness_round_off[place] / (model.mass(place, place) * std::pow(2 * kPi * frequency, 2));
+}
+
 // A free beam on a hinge: the two poles at 0 are kept, and the bound holds for the remaining part.
 TEST(ReducedModel, KeepsFreeMotions) {
   const LinearModel model = cantilever("continuous");
@@ -227,9 +236,59 @@ TEST(ReducedModel, KeepsFreeMotions) {
   EXPECT_EQ(small.kept, 2);
   const VectorXd& values = small.hankel_singular_values;
   const double free = frequency_response(model, {0.1}).gains[0].norm();
-  EXPECT_LT(largest_error(model, small.model, frequencies), 2 * values.tail(values.size() - 8).sum() + 1e-9 * free);
+  EXPECT_LT(largest_error(model, small.model, frequencies),
+            2 * values.tail(values.size() - 8).sum() + round_off_of_free_hinge(model, "root", 0.1) * free);
   EXPECT_THROW(reduced(model, 1), std::invalid_argument);
   EXPECT_THROW(reduced(model, static_cast<int>(model.a.rows()) + 1), std::invalid_argument);
+}
+
+/// A boom on a hinge about the vertical, in no gravity, from the hinge's effort to the way of its tip.
+LinearModel boom_on_hinge(const std::string& hinge, const std::string& boom) {
+  scene::SceneDescription description = test::scene_of(R"(<robot name="arm"><link name="world"/>
+    <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 0 1"/>)" +
+                                                       hinge + R"(</joint>
+    <link name="boom"> <beam elements="4"> <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.008"/>
+      <material young="70e9" poisson="0.33" density="2700"/>)" +
+                                                       boom + R"(
+      <hub at="start" mass="0.5" inertia="0.02 0.02 0.02"/> </beam> </link>
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)");
+  LinearRequest request;
+  request.inputs = {"effort:shoulder"};
+  request.outputs = {"position:boom/tip:y"};
+  return linearise(Simulation(std::move(description)), request);
+}
+
+int zeros_among(const std::vector<Pole>& poles) {
+  return static_cast<int>(
+      std::count_if(poles.begin(), poles.end(), [](const Pole& pole) { return pole.value == 0.0; }));
+}
+
+// A free hinge has two poles at 0, a damped one has one. Swings that decay slowly do decay, and what the effort does
+// not move is left out: here all swings in the vertical plane.
+TEST(ReducedModel, KeepsWhatInputsMove) {
+  const std::string damped = "<damping ratio=\"0.002\" frequency=\"3\"/>";
+  const LinearModel free = boom_on_hinge("", damped), held = boom_on_hinge("<dynamics damping=\"0.01\"/>", damped);
+  for (const bool is_free : {true, false}) {
+    const LinearModel& model = is_free ? free : held;
+    const int zeros = is_free ? 2 : 1;
+    EXPECT_EQ(zeros_among(poles(model)), zeros);
+    const ReducedModel small = reduced(model, 6);
+    EXPECT_EQ(small.kept, zeros);
+    EXPECT_EQ(small.model.a.rows(), 6);
+    EXPECT_EQ(zeros_among(poles(small.model)), zeros);
+    const VectorXd& values = small.hankel_singular_values;
+    const std::vector<double> frequencies = logarithmic(0.1, 1e3, 100);
+    const double largest = frequency_response(model, {0.1}).gains[0].norm();
+    EXPECT_LT(
+        largest_error(model, small.model, frequencies),
+        2 * values.tail(values.size() - 6 + zeros).sum() + round_off_of_free_hinge(model, "shoulder", 0.1) * largest);
+  }
+  const LinearModel undamped = boom_on_hinge("", "");
+  const auto states = static_cast<int>(undamped.a.rows());
+  const ReducedModel small = reduced(undamped, states);
+  EXPECT_GT(small.kept, 2);
+  EXPECT_LE(small.kept, states / 2 + 1);  // as many swings in each of the two planes, and the hinge
+  EXPECT_EQ(zeros_among(poles(small.model)), 2);
 }
 
 // ---------------------------------------------------------------- very thin beams

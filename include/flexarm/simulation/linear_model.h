@@ -53,7 +53,10 @@ struct LinearRequest {
 struct LinearModel {
   std::vector<std::string> coordinates;      ///< names of y, driven coordinates included
   Eigen::MatrixXd mass, damping, stiffness;  ///< damping includes gyroscopic, stiffness centrifugal terms
-  Eigen::VectorXd residual;                  ///< efforts that drive the driven coordinates in the reference, else zeros
+  /// Round-off of the diagonal of `stiffness` for coordinates that move whole bodies, whose strains cancel; 0 for
+  /// others.
+  Eigen::VectorXd stiffness_round_off;
+  Eigen::VectorXd residual;  ///< efforts that drive the driven coordinates in the reference, else zeros
   std::vector<std::string> states, inputs, outputs;
   int positions = 0;  ///< number of positions, which are the first states; their rates follow
   Eigen::MatrixXd a, b, c, d;
