@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """Test equilibria that `flexarm static` finds: `equilibria_test.py PROGRAM`.
 
-The scenes are arms whose first axis is vertical or slightly tilted, loops, joints whose limits are equal, and columns.
+The scenes are arms whose first axis is vertical or slightly tilted, loops, joints whose limits are equal, columns, and
+a ball on a cantilever.
 Independent code is the judge: numpy computes potential and moments by forward kinematics, and scipy minimises the
-potential from the position that flexarm found. The judge of columns is Euler's elastica.
+potential from the position that flexarm found. The judge of beams is Euler's elastica.
 """
 
 import csv
+import itertools
 import os
 import re
 import subprocess
@@ -15,6 +17,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import scipy.integrate
 import scipy.optimize
 import scipy.special
 
@@ -356,6 +359,64 @@ class Columns(Scenes):
                         x, y, z = self.tip(ratio, across, elements)
                         self.assertAlmostEqual(z, height, delta=error)
                         self.assertAlmostEqual(x if across else np.hypot(x, y), side, delta=error)
+
+
+class Feet(Scenes):
+    """A ball on a vertical guide is pressed onto a cantilever of length 1 and bending stiffness 1, and slides along it
+    without friction. The beam is stiff to the side, where the ball could fall off. The judge is the elastica, shot from the clamp."""
+
+    BALL, GUIDE = 0.03, 0.7
+    STIFFNESS = 1e6  # of the rod and of the contact
+    ROD = 2 * np.sqrt(100 / STIFFNESS)  # radius of a round rod with the larger one of the bending stiffnesses
+
+    def elastica(self, load):
+        """Return the tip's position, and the ball's height."""
+        reach = self.BALL + self.ROD  # from the rod's line to the ball's centre
+
+        def shot(moment, length, slope):
+            """Return {x, z, slope, moment} where the ball presses, across the rod's `slope` there."""
+            force = load * np.tan(slope), -load
+            return scipy.integrate.solve_ivp(
+                lambda _, y: (np.cos(y[2]), np.sin(y[2]), y[3], np.sin(y[2]) * force[0] - np.cos(y[2]) * force[1]),
+                (0, length), (0, 0, 0, moment), rtol=1e-11, atol=1e-13).y[:, -1]
+
+        def lacking(guess):
+            x, _, slope, moment = shot(*guess)
+            return moment, slope - guess[2], x - reach * np.sin(slope) - self.GUIDE
+
+        guess = scipy.optimize.fsolve(lacking, (-load * self.GUIDE, self.GUIDE, -load * self.GUIDE**2 / 2), xtol=1e-13)
+        self.assertLess(np.abs(lacking(guess)).max(), 1e-10)
+        x, z, slope, _ = shot(*guess)
+        free = 1 - guess[1]
+        return x + free * np.cos(slope), z + free * np.sin(slope), z + reach * np.cos(slope)
+
+    def test_ball_slides_along_a_cantilever(self):
+        elements = 24
+        for load, gap in itertools.product((0.3, 0.7, 1.1, 1.4), (-1e-5, 0, 1e-3)):
+            self.write("""<robot name="foot"> <link name="world"/>
+              <link name="arm"> <beam elements="%d" order="2"> <centerline> <line to="1 0 0"/> </centerline> <orientation y="0 1 0"/>
+                <section ea="%g" ga2="%g" ga3="%g" gj="100" ei2="1" ei3="100" mass="1" j1="2e-4" j2="1e-4" j3="1e-4"/>
+                </beam> </link>
+              <joint name="clamp" type="fixed"> <parent link="world"/> <child link="arm"/> </joint>
+              <link name="ball"> <inertial> <mass value="0.3"/>
+                <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/> </inertial>
+                <collision> <geometry> <sphere radius="%g"/> </geometry> </collision> </link>
+              <joint name="guide" type="prismatic"> <parent link="world"/> <child link="ball"/>
+                <origin xyz="%g 0 %r"/> <axis xyz="0 0 1"/> <limit lower="-10" upper="10" effort="0" velocity="0"/> </joint>
+              <contact first="ball" second="arm" stiffness="%g"/>
+              <simulation> <gravity xyz="0 0 0"/> <load link="ball" at="0 0 0" force="0 0 %r"/>
+                <probe name="tip" link="arm" at="1 0 0"/> </simulation> </robot>"""
+                       % (elements, *3 * (self.STIFFNESS,), self.BALL, self.GUIDE, self.BALL + self.ROD + gap,
+                          self.STIFFNESS, -load))
+            run = subprocess.run([PROGRAM, "static", self.path], capture_output=True, text=True, check=False)
+            with self.subTest(load=load, gap=gap):
+                self.assertEqual(run.returncode, 0, run.stderr)
+                tip = [float(value) for value in re.search(r"probe tip +(\S+) +(\S+) +(\S+)", run.stdout).groups()]
+                ball = float(re.search(r"link ball +\S+ +\S+ +(\S+)", run.stdout).group(1))
+                # Strains and depths of the order of the load over the stiffness; elements of order two.
+                error = 10 * load / self.STIFFNESS + 4 * (1 / elements)**4
+                for got, exact in zip((tip[0], tip[2], ball), self.elastica(load)):
+                    self.assertAlmostEqual(got, exact, delta=error)
 
 
 if __name__ == "__main__":
