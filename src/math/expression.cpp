@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "flexarm/math/near_names.h"
 
 namespace flexarm {
 namespace {
@@ -31,6 +35,15 @@ std::invalid_argument expression_error(std::string_view text, std::size_t positi
                                            position + 1, reason, expected));
 }
 
+/// Returns "; did you mean 'NAME'?" if a function, variable or constant has nearly this name; else an empty text.
+std::string meant_by(const std::string& token, const mu::Parser& parser) {
+  std::vector<std::string> names;
+  for (const auto& [name, function] : parser.GetFunDef()) names.push_back(name);
+  for (const auto& [name, value] : parser.GetVar()) names.push_back(name);
+  for (const auto& [name, value] : parser.GetConst()) names.push_back(name);
+  return token.size() <= kLongestReason ? suggestion(token, names) : "";
+}
+
 }  // namespace
 
 std::string quoted_expression(std::string_view text) {
@@ -51,7 +64,9 @@ double compile_expression(mu::Parser& parser, const std::string& text, std::stri
     if (parser.GetNumResults() == 1) return value;
   } catch (const mu::Parser::exception_type& error) {
     const std::size_t position = error.GetPos() < 0 ? 0 : static_cast<std::size_t>(error.GetPos());
-    throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason), expected);
+    const std::string meant = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN ? meant_by(error.GetToken(), parser) : "";
+    throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason) + meant,
+                           expected);
   }
   throw expression_error(text, text.find(','), "several values separated by commas", expected);
 }
