@@ -1,3 +1,4 @@
+#include "building/model_builder.h"
 #include "building/passes.h"
 #include "building/spatial_inertia.h"
 #include "joints/joint_kinematics.h"
@@ -11,6 +12,15 @@ constexpr double kRoundOff = 1e-13;
 /// The same, relative to the largest motion about the joint. Smaller values have no digits by which they could be
 /// judged.
 constexpr double kJudgeable = 1e-11;
+/// The same for a motion of several coordinates, relative to their own inertias. Rotations and levers leave as much
+/// round-off in it.
+constexpr double kHidden = 1e-12;
+/// Larger mass matrices are not asked: a chain of n equal links has a motion with some n^-4 of the inertia of one
+/// joint.
+constexpr std::size_t kMostAsked = 100;
+/// The coordinates that a motion is said to be of have at least this part of the largest motion, each relative to its
+/// own inertia.
+constexpr double kTakesPart = 0.1;
 
 /// Factorises the joints' mass matrix from the leaves to the root (Featherstone). Parts outboard of a joint resist
 /// motions inboard with the inertia that is left when the joint itself can move.
@@ -50,21 +60,79 @@ class Articulation {
   const std::vector<int>& dependent_coordinates() const { return dependent_; }
   const std::vector<double>& inertias() const { return inertias_; }
 
+  /// After factorise(): see coordinates_of_hidden_inertia().
+  std::vector<int> hidden_motion() const {
+    const std::vector<FreeColumn> columns = free_columns();
+    const std::size_t count = columns.size();
+    if (count < 2 || count > kMostAsked) return {};
+    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(count, count);
+    for (std::size_t b = 0; b < count; ++b) {
+      const Vector6 force = locked_[columns[b].node] * columns[b].motion;
+      std::vector<bool> carries(model_.nodes.size(), false);
+      for (int node = columns[b].node; node >= 0; node = parents_[node]) carries[node] = true;
+      for (std::size_t a = 0; a < count; ++a)
+        if (carries[columns[a].node] && (columns[a].node != columns[b].node || a <= b))
+          mass(a, b) = mass(b, a) = at(columns[b].node, columns[a]).dot(force);
+      mass(b, b) += columns[b].rotor;
+    }
+    const Eigen::VectorXd scale = mass.diagonal().cwiseSqrt().cwiseInverse();
+    const auto [inertias, motions] = symmetric_eigenpairs(scale.asDiagonal() * mass * scale.asDiagonal());
+    if (inertias[0] > kHidden) return {};
+    const Eigen::VectorXd parts = motions.col(0).cwiseAbs();
+    std::vector<int> coordinates;
+    for (std::size_t i = 0; i < count; ++i)
+      if (parts[static_cast<Eigen::Index>(i)] >= kTakesPart * parts.maxCoeff())
+        coordinates.push_back(columns[i].coordinate);
+    return coordinates;
+  }
+
  private:
+  /// The motion {displacement, spin} of a joint's slave, and of all that it carries, per unit of a free coordinate.
+  struct FreeColumn {
+    int coordinate, node;
+    Vector6 motion;
+    double rotor;
+  };
+
+  std::vector<FreeColumn> free_columns() const {
+    std::vector<FreeColumn> out;
+    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+      const int j = joint_of_[i];
+      if (j < 0 || model_.joints[j].kind == JointMapKind::Slide) continue;
+      const Columns columns = columns_of(j);
+      for (const int k : free_components(j, columns, static_cast<int>(i)))
+        out.push_back({model_.first_coordinate[j] + k, static_cast<int>(i), columns.col(k), rotor(j, k)});
+    }
+    return out;
+  }
+
+  /// The motion of a node that the column's node carries.
+  Vector6 at(int node, const FreeColumn& column) const {
+    Vector6 motion = column.motion;
+    const Vector3 way = model_.nodes[node].position - model_.nodes[column.node].position;
+    motion.head<3>() += column.motion.tail<3>().cross(way);
+    return motion;
+  }
+
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
-  void yield(int j, int node) {
+  Columns columns_of(int j) const {
     FoldMaps maps;
     variational_maps(model_.joints[j], joint_pose(model_.joints[j], model_.nodes, model_.initial_released[j]),
                      Vector6::Zero(), maps);
-    std::vector<int> free = free_components(j, maps.right, node);
+    return maps.right;
+  }
+
+  void yield(int j, int node) {
+    const Columns all = columns_of(j);
+    std::vector<int> free = free_components(j, all, node);
     while (!free.empty()) {
       Columns columns(6, free.size());
-      for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = maps.right.col(free[k]);
+      for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = all.col(free[k]);
       const int dependent = dependent_of(columns, rotors(j, free), node);
       if (dependent < 0) {
-        for (const int component : free) yield_along(maps.right.col(component), j, component, node);
+        for (const int component : free) yield_along(all.col(component), j, component, node);
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
@@ -140,6 +208,13 @@ std::vector<int> coordinates_without_own_inertia(const std::vector<int>& parents
   Articulation articulation(parents, model);
   if (!articulation.has_loops()) articulation.factorise();
   return articulation.dependent_coordinates();
+}
+
+std::vector<int> coordinates_of_hidden_inertia(const Model& model) {
+  Articulation articulation(model.node_parents, model);
+  if (articulation.has_loops()) return {};
+  articulation.factorise();
+  return articulation.hidden_motion();
 }
 
 std::vector<double> articulated_inertias(const std::vector<int>& parents, const Model& model) {

@@ -80,8 +80,9 @@ struct Simulation::Implementation {
         start_warnings(std::move(placed.warnings)) {
     require_suitable_slides(scene, scheme);
     require_suitable_refinement(scene, scheme, model);
-    for (const scene::Diagnostics& found : {held_joints(scene, model), open_loops(scene, model),
-                                            joints_beyond_beams(scene), doubts_about_scheme(scene, model, scheme)})
+    for (const scene::Diagnostics& found :
+         {held_joints(scene, model), open_loops(scene, model), joints_beyond_beams(scene), hidden_inertia(scene, model),
+          doubts_about_scheme(scene, model, scheme)})
       start_warnings.insert(start_warnings.end(), found.begin(), found.end());
     const std::set<std::string> hidden = hidden_coordinates(scene);
     for (const Coordinate& coordinate : model.coordinates) {

@@ -9,6 +9,7 @@
 
 #include "analysis/modes.h"
 #include "analysis/statics.h"
+#include "building/model_builder.h"
 #include "flexarm/model/model_error.h"
 #include "model/degrees_of_freedom.h"
 #include "simulation/equilibrium_text.h"
@@ -86,6 +87,25 @@ scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model
       if (held.count(joint.name + suffix) > 0) tell(joint, suffix);
   }
   return findings;
+}
+
+scene::Diagnostics hidden_inertia(const scene::SceneDescription& scene, const Model& model) {
+  std::set<std::string> names;
+  for (const int coordinate : coordinates_of_hidden_inertia(model)) names.insert(model.coordinates[coordinate].name);
+  std::string listed;
+  const scene::JointDescription* last = nullptr;
+  for (const scene::JointDescription& joint : scene.joints)
+    for (const std::string& suffix : scene::coordinate_suffixes(joint)) {
+      if (names.count(joint.name + suffix) == 0) continue;
+      listed += fmt::format("{}'{}{}'", listed.empty() ? "" : ", ", joint.name, suffix);
+      last = &joint;
+    }
+  if (!last) return {};
+  return {
+      warning(last->location, fmt::format("<joint> '{}'", last->name),
+              "can move together with others against nearly no inertia: their mass matrix is singular within "
+              "round-off, so that their accelerations have no digits; give links between them inertia, or armatures",
+              listed)};
 }
 
 scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme) {

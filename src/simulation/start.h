@@ -19,6 +19,9 @@ std::set<std::string> hidden_coordinates(const scene::SceneDescription& scene);
 /// A warning for each joint coordinate that massless="lock" holds where it starts, in the scene's order.
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model);
 
+/// A warning if joints together move nearly nothing that has inertia: see coordinates_of_hidden_inertia().
+scene::Diagnostics hidden_inertia(const scene::SceneDescription& scene, const Model& model);
+
 /// A warning if the scheme does not damp the oscillation of its accelerations across joints. (docs/notes/joints.md 3.2)
 scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme);
 

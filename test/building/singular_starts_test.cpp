@@ -49,6 +49,50 @@ TEST(SingularInertia, MasslessChains) {
   expect_error(massless_chain(1, 0, point, end).scene, "start elsewhere by <initial>");
 }
 
+/// A point mass on three axes through one point, which moves it on a sphere, in two directions only. It is in the plane
+/// of roll and yaw, except for their errors `off`: together these two turn the links about the line to it.
+SceneBuilder wrist(double off) {
+  SceneBuilder b;
+  b.scene.links.push_back({"first", {}, {}, {}});
+  b.scene.links.push_back({"second", {}, {}, {}});
+  b.body("head", 3, {0.0185, -0.1108, 0}, Matrix3::Zero());
+  b.joint("pitch", JointKind::Continuous, "world", "first", Vector3::Zero(), Vector3::UnitZ());
+  b.joint("roll", JointKind::Continuous, "first", "second", Vector3::Zero(), {1, 2 * off, -off});
+  b.joint("yaw", JointKind::Continuous, "second", "head", Vector3::Zero(), {off, 1, 0});
+  return b;
+}
+
+// Angles of CAD are often rounded to four decimals, such as 1.5708: 4e-6 off. Roll then keeps off^2 of its inertia, in
+// which digits are lost so that pitch seems to keep some. Such a start is refused, or warned of with its joints.
+TEST(SingularInertia, HiddenByRoundedAngles) {
+  for (const double off : {0.0, 1e-8, 3.7e-6, 1e-4, 1e-3, 0.1}) {
+    try {
+      const Model model = build_model(wrist(off).scene);
+      const std::vector<int> hidden = coordinates_of_hidden_inertia(model);
+      EXPECT_GE(hidden.size(), 2u) << off;
+      EXPECT_TRUE(std::count(hidden.begin(), hidden.end(), 1) == 1 && std::count(hidden.begin(), hidden.end(), 2) == 1)
+          << off << ": roll and yaw";
+    } catch (const ModelError& error) {
+      EXPECT_NE(std::string(error.what()).find("moves nothing at the start"), std::string::npos) << error.what();
+    }
+  }
+}
+
+// Chains of equal links have motions with little inertia, but with digits.
+TEST(SingularInertia, IsNotHiddenInChains) {
+  for (const int links : {1, 2, 6, 30, 90}) {
+    SceneBuilder b;
+    std::string parent = "world";
+    for (int i = 0; i < links; ++i) {
+      b.body("link" + std::to_string(i), 1, {0.5, 0, 0}, Vector3(0, 1. / 12, 1. / 12).asDiagonal());
+      b.joint("hinge" + std::to_string(i), JointKind::Continuous, parent, "link" + std::to_string(i),
+              {i == 0 ? 0. : 1., 0, 0}, kAcross);
+      parent = "link" + std::to_string(i);
+    }
+    EXPECT_TRUE(coordinates_of_hidden_inertia(build_model(b.scene)).empty()) << links;
+  }
+}
+
 TEST(SingularInertia, AxesInLineWithNothingBetween) {
   RandomSource random(3);
   for (int repeat = 0; repeat < 10; ++repeat) {
