@@ -195,9 +195,9 @@ class EquilibriumSearch {
   bool sharpen_by_newton() {
     for (double last = std::numeric_limits<double>::infinity();;) {
       if (!let_servos_integrate() || !solve(1)) return false;
-      const double way = newton_.update_norms().front();
-      if (!(way < kShorter * last)) return true;
-      last = way;
+      const std::vector<double>& ways = newton_.update_norms();
+      if (ways.empty() || !(ways.front() < kShorter * last)) return true;  // none: nothing can move
+      last = ways.front();
     }
   }
 

@@ -1,9 +1,10 @@
 #include "scene/scene_checks.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,19 +26,23 @@ struct Follower {
 /// Returns the followers in the order of the joints. Leaves out those whose chain ends at an unknown joint or is a
 /// ring.
 std::vector<Follower> followers_of(const std::vector<JointDescription>& joints) {
-  std::map<std::string, const JointDescription*> named;
+  std::unordered_map<std::string, const JointDescription*> named;
   for (const JointDescription& joint : joints) named.emplace(joint.name, &joint);
+  std::unordered_map<const JointDescription*, const JointDescription*> masters;  // null: unknown
+  for (const JointDescription& joint : joints) {
+    if (!joint.mimic) continue;
+    const auto found = named.find(joint.mimic->joint);
+    masters.emplace(&joint, found == named.end() ? nullptr : found->second);
+  }
   std::vector<Follower> followers;
   for (const JointDescription& joint : joints) {
     if (!joint.mimic) continue;
     Follower follower{&joint, &joint, 1, 0};
-    std::set<const JointDescription*> passed;
-    while (follower.master && follower.master->mimic && passed.insert(follower.master).second) {
+    for (std::size_t passed = 0; follower.master && follower.master->mimic && passed < joints.size(); ++passed) {
       const Mimic& mimic = *follower.master->mimic;
       follower.offset += follower.multiplier * mimic.offset;
       follower.multiplier *= mimic.multiplier;
-      const auto next = named.find(mimic.joint);
-      follower.master = next == named.end() ? nullptr : next->second;
+      follower.master = masters.at(follower.master);
     }
     if (follower.master && !follower.master->mimic) followers.push_back(follower);
   }

@@ -363,7 +363,8 @@ class Columns(Scenes):
 
 class Feet(Scenes):
     """A ball on a vertical guide is pressed onto a cantilever of length 1 and bending stiffness 1, and slides along it
-    without friction. The beam is stiff to the side, where the ball could fall off. The judge is the elastica, shot from the clamp."""
+    without friction. The beam is stiff to the side, where the ball could fall off. The judge is the elastica, shot from
+    the clamp."""
 
     BALL, GUIDE = 0.03, 0.7
     STIFFNESS = 1e6  # of the rod and of the contact
@@ -394,7 +395,8 @@ class Feet(Scenes):
         elements = 24
         for load, gap in itertools.product((0.3, 0.7, 1.1, 1.4), (-1e-5, 0, 1e-3)):
             self.write("""<robot name="foot"> <link name="world"/>
-              <link name="arm"> <beam elements="%d" order="2"> <centerline> <line to="1 0 0"/> </centerline> <orientation y="0 1 0"/>
+              <link name="arm"> <beam elements="%d" order="2"> <centerline> <line to="1 0 0"/> </centerline>
+                <orientation y="0 1 0"/>
                 <section ea="%g" ga2="%g" ga3="%g" gj="100" ei2="1" ei3="100" mass="1" j1="2e-4" j2="1e-4" j3="1e-4"/>
                 </beam> </link>
               <joint name="clamp" type="fixed"> <parent link="world"/> <child link="arm"/> </joint>
@@ -402,7 +404,8 @@ class Feet(Scenes):
                 <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/> </inertial>
                 <collision> <geometry> <sphere radius="%g"/> </geometry> </collision> </link>
               <joint name="guide" type="prismatic"> <parent link="world"/> <child link="ball"/>
-                <origin xyz="%g 0 %r"/> <axis xyz="0 0 1"/> <limit lower="-10" upper="10" effort="0" velocity="0"/> </joint>
+                <origin xyz="%g 0 %r"/> <axis xyz="0 0 1"/>
+                <limit lower="-10" upper="10" effort="0" velocity="0"/> </joint>
               <contact first="ball" second="arm" stiffness="%g"/>
               <simulation> <gravity xyz="0 0 0"/> <load link="ball" at="0 0 0" force="0 0 %r"/>
                 <probe name="tip" link="arm" at="1 0 0"/> </simulation> </robot>"""

@@ -78,6 +78,15 @@ INSTANTIATE_TEST_SUITE_P(Schemes, EquilibriumStart, testing::ValuesIn(scheme_var
 
 // A servo with an integral holds the load without an error. A servo without one has the error at which kp holds the
 // load.
+// There are no unknowns, so Newton's method makes no update.
+TEST(EquilibriumStarts, OfWhatCannotMove) {
+  SceneBuilder b;
+  b.body("post", 1, {0, 0, 1}, Matrix3::Identity());
+  b.joint("foot", scene::JointKind::Fixed, "world", "post");
+  b.scene.starts_in_equilibrium = true;
+  EXPECT_TRUE(Simulation(b.scene).start_warnings().empty());
+}
+
 TEST(EquilibriumStarts, ServosStandWhereTheyWouldComeToRest) {
   SceneBuilder b = held_arm();
   Simulation integrating(b.scene);
