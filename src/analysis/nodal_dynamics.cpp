@@ -135,9 +135,15 @@ StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, 
     }
     return all;
   };
-  const MovingMatrix moving =
-      along([&](double time) { return stacked(damped_stretches(model, dof, maps.moved(pose, rates, time))); },
-            stretches.empty() ? 0 : spacing);
+  // What touches at one of the poses and not at this one has other rows there. Then it counts as unchanged.
+  const auto at_time = [&](double time) {
+    std::vector<Stretch> parts = damped_stretches(model, dof, maps.moved(pose, rates, time));
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (parts[k].scalars != stretches[k].scalars || parts[k].rows.rows() != stretches[k].rows.rows())
+        parts[k].rows = stretches[k].rows;
+    return stacked(parts);
+  };
+  const MovingMatrix moving = along(at_time, stretches.empty() ? 0 : spacing);
   Triplets by_rates, by_places;
   const Eigen::VectorXd speeds = maps.at(pose) * rates.first;
   const State state = state_at(pose);

@@ -71,8 +71,12 @@ void SparseTangent::add_coupling(int index, const Eigen::Ref<const Eigen::Matrix
   assert(values.cols() == values.rows() && values.rows() == 6 * static_cast<Eigen::Index>(nodes.size()));
   const int count = static_cast<int>(nodes.size());
   for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j)
-      Eigen::Map<Matrix6>(values_.data() + blocks_[blocks[i * count + j]].offset) += values.block<6, 6>(6 * i, 6 * j);
+    for (int j = 0; j < count; ++j) {
+      const auto value = values.block<6, 6>(6 * i, 6 * j);
+      const int block = blocks[i * count + j];
+      assert(block >= 0 || value.isZero(0));  // nodes that are in no piece together have no block
+      if (block >= 0) Eigen::Map<Matrix6>(values_.data() + blocks_[block].offset) += value;
+    }
 }
 
 void SparseTangent::add_coupling(int index, const PieceTangent& tangent) {

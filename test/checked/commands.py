@@ -22,7 +22,7 @@ import tempfile
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 STEPS = 5  # of each simulation
-SECONDS = 4  # of processor time for each command
+SECONDS = 2  # of processor time for each command
 PATIENCE = 3000  # s, wall time: at idle priority it may be long; who uses neither this nor its processor time hangs
 OWN_STATUS = (0, 1, 2)  # see src/cli/exit_status.h
 HARM = re.compile(r"runtime error: |ERROR: \w+Sanitizer|Assertion `|terminate called|malloc\(\)|free\(\)|core dumped")
