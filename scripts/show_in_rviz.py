@@ -19,6 +19,7 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 import ctypes
 import math
 import os
+import shutil
 import sys
 import time
 import xml.etree.ElementTree
@@ -106,8 +107,10 @@ def fit(config, view, prefix, description, interactive=False):
     return config
 
 
-def fault_of_display():
-    """Why no window can be opened, or ""."""
+def fault():
+    """Why rviz cannot open a window, or ""."""
+    if shutil.which("rviz") is None:
+        return "it is not installed (package rviz, which not every system has)"
     name = os.environ.get("DISPLAY", "")
     if not name:
         return "there is no display, as DISPLAY is not set"
@@ -125,8 +128,8 @@ def give_up(reason):
 
 
 def main():
-    if fault := fault_of_display():
-        give_up(fault)
+    if reason := fault():
+        give_up(reason)
     view = wait_for_view()
     description = rospy.search_param("robot_description")
     if description is None:
@@ -141,10 +144,7 @@ def main():
     path = os.path.join(rospkg.get_ros_home(), name)
     with open(path, "w", encoding="utf-8") as file:
         yaml.safe_dump(config, file)
-    try:
-        os.execvp("rviz", ["rviz", "-d", path, *sys.argv[1:]])
-    except FileNotFoundError:
-        give_up("it is not installed")
+    os.execvp("rviz", ["rviz", "-d", path, *sys.argv[1:]])
 
 
 if __name__ == "__main__":

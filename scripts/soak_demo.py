@@ -248,7 +248,7 @@ def main():
     scene = os.path.join(rospkg.RosPack().get_path("flexarm"), "config", "demo_arm.urdf")
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="soak"))
-        rviz = not arguments.no_rviz and shutil.which("Xvfb") is not None
+        rviz = not arguments.no_rviz and None not in map(shutil.which, ("Xvfb", "rviz"))
         environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}
         if rviz:
             environment["DISPLAY"] = stack.enter_context(display())

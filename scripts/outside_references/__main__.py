@@ -7,6 +7,7 @@ outside_references --judge SCENE.urdf [--until 2]     runs a scene in flexarm, a
 
 import argparse
 import csv
+import multiprocessing
 import os
 import re
 import subprocess
@@ -80,7 +81,8 @@ def generate(folder, only, jobs):
     scenes = [scene for scene in all_scenes() if only in f"{scene.group}: {scene.name}"]
     os.makedirs(folder, exist_ok=True)
     rows, failures = [], 0
-    with futures.ProcessPoolExecutor(jobs) as pool:
+    # Other ways to start a process, the default from Python 3.14 on, do not find functions of a folder's __main__.
+    with futures.ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("fork")) as pool:
         waiting = [(scene, pool.submit(write, folder, scene)) for scene in scenes]
         for scene, result in waiting:
             try:

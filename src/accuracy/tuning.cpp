@@ -6,6 +6,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "accuracy/candidates.h"
 #include "flexarm/model/model_error.h"

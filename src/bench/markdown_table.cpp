@@ -1,6 +1,7 @@
 #include "bench/markdown_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flexarm::bench {
 

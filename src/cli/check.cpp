@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/flexible_dead_point.h"
 #include "building/section.h"

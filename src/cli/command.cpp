@@ -11,6 +11,7 @@
 #include <boost/program_options.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/exit_status.h"
 #include "flexarm/math/near_names.h"

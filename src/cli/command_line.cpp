@@ -7,6 +7,7 @@
 #include <malloc.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/interruptions.h"
 #include "flexarm/math/near_names.h"

@@ -1,5 +1,6 @@
 // NeighbourSteps: how neighbours pass events, in pieces together with a repetition of the run.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "integrators/neighbour_steps.h"
 #include "model/state_numbers.h"

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "flexarm/schemes/integrator_description.h"
 #include "scene/limits.h"

@@ -1,6 +1,7 @@
 #include "schemes/scheme.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "flexarm/model/model_error.h"
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/element_matrices.h"
 #include "flexarm/scene/scene_description.h"

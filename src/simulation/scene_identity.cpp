@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "schemes/scheme.h"
 #include "simulation/fingerprint.h"

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/mechanism_states.h"
 #include "flexarm/model/model_error.h"

@@ -3,6 +3,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -165,8 +166,10 @@ class Launching(unittest.TestCase):
             self.assertIn("got 'stiff'", said)
             self.assertNotIn("Traceback", said)
 
-    def test_without_a_display_it_says_what_to_do(self):
+    def test_without_rviz_or_a_display_it_says_what_to_do(self):
         for display, fault in (("", "DISPLAY is not set"), (":987", "the display :987 cannot be opened")):
+            if shutil.which("rviz") is None:
+                fault = "it is not installed"
             with self.launch("scene:=arm.urdf", display=display) as launched:
                 wait_until(lambda: "rviz cannot start: " in launched.output(), "the reason", 30)
                 wait_until(lambda: "with web:=true" in launched.output(), "the advice")

@@ -24,7 +24,7 @@ class Rviz(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with mock.patch("os.execvp") as execute, mock.patch("sys.argv", ["show_in_rviz.py", "__name:=rviz"]), \
-                mock.patch("show_in_rviz.fault_of_display", return_value=""):
+                mock.patch("show_in_rviz.fault", return_value=""):
             show_in_rviz.main()
         (cls.program, cls.arguments), _ = execute.call_args
         with open(cls.arguments[2], encoding="utf-8") as file:
@@ -33,6 +33,11 @@ class Rviz(unittest.TestCase):
     def test_starts_rviz_with_the_arguments_of_roslaunch(self):
         self.assertEqual(self.program, "rviz")
         self.assertEqual(self.arguments[:2] + self.arguments[3:], ["rviz", "-d", "__name:=rviz"])
+
+    def test_says_where_rviz_is_not_installed(self):
+        with mock.patch("shutil.which", return_value=None), self.assertRaises(SystemExit) as end:
+            show_in_rviz.main()
+        self.assertRegex(str(end.exception), "^rviz cannot start: it is not installed .* with web:=true")
 
     def test_view_fits_the_scene(self):
         """Two links of 1 m that rotate about the origin reach 2 m."""
