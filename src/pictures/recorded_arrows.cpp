@@ -106,8 +106,7 @@ void RecordedArrows::find_reactions(std::size_t row, const Simulation& shown, st
     const Quaternion axes = sensor.kind == scene::SensorKind::Wrench ? shown.link_pose(link).orientation
                                                                      : Quaternion::Identity();  // else the world's
     const auto vector = [&, &own = columns](std::size_t k) {
-      return Vector3(columns_.value(row, own[k]), columns_.value(row, own[k + 1]),
-                     columns_.value(row, own[k + 2]));
+      return Vector3(columns_.value(row, own[k]), columns_.value(row, own[k + 1]), columns_.value(row, own[k + 2]));
     };
     const Vector3 place =
         pose_in_world(model_of(shown), state_of(shown), model_of(shown).sensors[index].point).position;
