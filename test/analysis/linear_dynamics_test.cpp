@@ -11,6 +11,7 @@
 #include "support/dense_solution.h"
 #include "support/loops.h"
 #include "support/scene_builder.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
@@ -119,6 +120,42 @@ TEST(LinearDynamics, OfAFlexibleArmInMotion) {
       0.3;
   builder.joint("grip", scene::JointKind::Prismatic, "fore", "load", Vector3(1, 0, 0), Vector3::UnitZ());
   expect_second_order(build_model(builder.scene), 3e-4);
+}
+
+/// A box that falls onto a floor at 1 m/s, 1 mm above it, with a swinging body on a damped line.
+Model falling_box(const std::string& contact) {
+  return build_model(scene_of(R"(<robot name="fall"> <ground name="floor"/> <link name="world"/>
+    <joint name="guide" type="prismatic"> <parent link="world"/> <child link="box"/> <origin xyz="0 0 0.101"/>
+      <axis xyz="0 0 1"/> <limit lower="-1" upper="1" effort="0" velocity="0"/> </joint>
+    <link name="box"> <inertial> <mass value="1"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial>
+      <collision> <geometry> <box size="0.2 0.2 0.2"/> </geometry> </collision> </link>
+    <joint name="hinge" type="continuous"> <parent link="box"/> <child link="arm"/> <origin xyz="0 0 1"/>
+      <axis xyz="0 1 0"/> <dynamics damping="0.3"/> </joint>
+    <link name="arm"> <inertial> <origin xyz="0.3 0 0"/> <mass value="0.5"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <tendon name="line" ea="30" damping="4" rest_length="0.5"> <via link="world" at="0.5 0 2"/>
+      <via link="arm" at="0.3 0 0"/> </tendon> )" +
+                              contact + "</robot>"));
+}
+
+// The poses from which differences along the motion are taken are centimetres apart, and the box touches at some of
+// them. Before it touches, a contact changes nothing.
+TEST(LinearDynamics, OfWhatIsAboutToTouch) {
+  const auto dynamics_of = [](const Model& model) {
+    const DegreesOfFreedom dof(model);
+    const MotionMaps maps(model, dof);
+    const State state = initial_state(model);
+    const VectorXd rates = Eigen::Vector2d(-1, 0.7);
+    return LinearDynamics(model, state, *find_scheme("em"), Reference::Instant,
+                          rates_by(model, dof, maps, pose_of(state), rates));
+  };
+  const Model touching = falling_box(R"(<contact first="box" second="floor"/>)"), free = falling_box("");
+  const LinearDynamics expected = dynamics_of(free), got = dynamics_of(touching);
+  ASSERT_EQ(got.size(), 2);
+  EXPECT_EQ(got.stiffness(), expected.stiffness());
+  EXPECT_EQ(got.damping(), expected.damping());
+  EXPECT_EQ(got.residual(), expected.residual());
 }
 
 /// A drive with its motor on `coordinate` behind an elastic gear.

@@ -7,6 +7,7 @@
 #include "math/pi.h"
 #include "simulation/observables.h"
 #include "support/scene_builder.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
@@ -278,6 +279,27 @@ TEST(NaturalModes, NothingMovesOrNothingAsked) {
   const Model model = build_model(pendulum.scene);
   EXPECT_TRUE(natural_modes(model, initial_state(model), 0).empty());
   EXPECT_EQ(natural_modes(model, initial_state(model), 5).size(), 1u);  // there are no more modes
+}
+
+// A line without tension changes no mode. Most of its points share no piece, and have no block of the matrices
+// together.
+TEST(Modes, OfARodWithASlackLine) {
+  const auto modes_of = [](const std::string& line) {
+    const Model model = build_model(scene_of(R"(<robot name="rod"> <link name="world"/>
+      <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint>
+      <link name="rod"> <beam elements="12" order="2"> <centerline> <line to="0.3 0 0"/> </centerline>
+        <section ea="2e4" ga2="1e4" ga3="1e4" gj="0.01" ei2="0.01" ei3="0.02" mass="0.05" j1="4e-6" j2="2e-6" j3="2e-6"/>
+        <damping stiffness_proportional="2e-3"/> </beam> </link> )" +
+                                             line + "<simulation> <gravity xyz=\"0 0 0\"/> </simulation> </robot>"));
+    return natural_modes(model, initial_state(model), 6, 0.01);
+  };
+  const std::vector<Mode> expected = modes_of(""), got = modes_of(R"(<tendon name="line" tension="0">
+    <vias link="rod" from="0 0 0" to="0.3 0 0" count="13" radius="0.01"/> </tendon>)");
+  ASSERT_EQ(got.size(), expected.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_NEAR(got[i].frequency, expected[i].frequency, 1e-9 * expected[i].frequency);
+    EXPECT_NEAR(got[i].rate, expected[i].rate, 1e-9 * std::abs(expected[i].rate));
+  }
 }
 
 }  // namespace

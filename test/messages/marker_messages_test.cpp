@@ -44,12 +44,25 @@ class Markers : public ::testing::Test {
   void step(int steps) {
     for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation_.step().converged);
   }
+  /// The texts of the legend with all that it can have. Makes a step.
+  std::vector<Marker> full_legend();
   Simulation simulation_;
   std::vector<std::string> warnings_;
 };
 
 MarkerArray shown(MarkerMessages& messages) {
   return messages.make(ros::Time(1), 0.5);
+}
+
+std::vector<Marker> Markers::full_legend() {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
+  step(1);
+  std::vector<Marker> texts;
+  for (const Marker& marker : shown(messages).markers)
+    if (marker.ns == "legend" && marker.type == Marker::TEXT_VIEW_FACING) texts.push_back(marker);
+  return texts;
 }
 
 const Marker* find(const MarkerArray& message, const std::string& name, int action = Marker::ADD) {
@@ -374,13 +387,10 @@ TEST_F(Markers, SayWhyNothingMovesAboveTheScene) {
 }
 
 TEST_F(Markers, LegendIsBesideAllThatTheArmReaches) {
-  MarkerMessages messages = this->messages();
-  simulation_.command_effort(0, 5);
-  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
-  step(1);
+  const std::vector<Marker> texts = full_legend();
   const pictures::SceneExtent extent = pictures::scene_extent(simulation_);
-  for (const Marker& marker : shown(messages).markers) {
-    if (marker.ns != "legend" || marker.type != Marker::TEXT_VIEW_FACING) continue;
+  EXPECT_FALSE(texts.empty());
+  for (const Marker& marker : texts) {
     constexpr double kLetter = 0.5;  // width of a letter relative to its height
     const double half = 0.5 * kLetter * marker.scale.z * static_cast<double>(marker.text.size()) / extent.radius;
     EXPECT_LT(place_in_picture(marker, extent).first + half, -kOutline) << marker.text;
@@ -389,21 +399,15 @@ TEST_F(Markers, LegendIsBesideAllThatTheArmReaches) {
 
 // With all that it can have, the legend is lower than 60 % of what the arm reaches.
 TEST_F(Markers, LegendIsLow) {
-  MarkerMessages messages = this->messages();
-  simulation_.command_effort(0, 5);
-  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
-  step(1);
+  const std::vector<Marker> texts = full_legend();
   const pictures::SceneExtent extent = pictures::scene_extent(simulation_);
   double lowest = 1, highest = -1;
-  int texts = 0;
-  for (const Marker& marker : shown(messages).markers) {
-    if (marker.ns != "legend" || marker.type != Marker::TEXT_VIEW_FACING) continue;
+  for (const Marker& marker : texts) {
     const double half = 0.5 * marker.scale.z / extent.radius, height = place_in_picture(marker, extent).second;
     lowest = std::min(lowest, height - half);
     highest = std::max(highest, height + half);
-    ++texts;
   }
-  EXPECT_GE(texts, 8);  // title, three strains, force, moment, two or more kinds of arrows
+  EXPECT_GE(texts.size(), 8u);  // title, three strains, force, moment, two or more kinds of arrows
   EXPECT_LT(highest - lowest, 1.2);
 }
 

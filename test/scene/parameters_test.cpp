@@ -179,6 +179,12 @@ TEST(Parameters, ValuesOfExpressionsThatCannotBeAreToldWithTheirOrigin) {
       "scene.urdf:28: <load> of simulation: history is not a function of time, got expression '1*sin(x)', at "
       "character 7: Unexpected token \"x\" found at position 6.; expected an expression of t, or a table "
       "TIME:VALUE TIME:VALUE ... of '${half}*sin(x)' with half = 1");
+  expect_findings(
+      read(arm_with("${half}*sin(t)", "sine(t)")),
+      "scene.urdf:28: <load> of simulation: history is not a function of time, got expression 'sine(t)', at character "
+      "1: "
+      "Unexpected token \"sine\" found at position 0.; did you mean 'sin'?; expected an expression of t, or a table "
+      "TIME:VALUE TIME:VALUE ...");
 }
 
 TEST(Parameters, Declarations) {
