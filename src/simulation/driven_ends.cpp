@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
 #include "flexarm/scene/scene_description.h"
-#include "flexarm/simulation/linear_model.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -16,8 +15,12 @@ namespace {
 
 /// A driven end is reported if its inertia is less than this part of the inertia of all that the joint moves.
 constexpr double kSmallPart = 1e-2;
-/// Dense matrices of this size are factorised quickly enough.
+/// Steps of models of this size are quick enough.
 constexpr std::size_t kMostUnknowns = 500;
+/// About how far an effort turns a joint to show its inertia, if all that the joint moves is rigid [rad].
+constexpr double kSmallTurn = 1e-6;
+/// Of Newton's method in this step.
+constexpr double kTolerance = 1e-10;
 
 /// Nodes that a joint moves: its slave, and all nodes connected to it by elements and further joints.
 std::vector<bool> moved_nodes(const Model& model, const JointMap& joint) {
@@ -87,41 +90,62 @@ bool is_driven(const Model& model, const Coordinate& coordinate, const std::vect
   return coordinate.effort_limit > 0 && (at_beam[joint.slave] || (joint.master >= 0 && at_beam[joint.master]));
 }
 
-/// For each driven joint that rotates, the effective inertia that its drive feels for `time` [kg m^2]. It follows from
-/// one midpoint-rule step of that length, with the linear model at the start and without servos. Empty if the model is
-/// too large or has no linear model.
-std::map<std::string, double> resistances(const Simulation& simulation, double time) {
-  std::map<std::string, double> out;
-  if (simulation.degrees_of_freedom() > kMostUnknowns) return out;
-  LinearRequest request;
-  request.about = LinearisedAbout::Instant;
-  const Model& model = model_of(simulation);
-  const std::vector<bool> at_beam = nodes_at_beams(model);
-  for (const Coordinate& coordinate : model.coordinates)
-    if (is_driven(model, coordinate, at_beam) && turns(model.joints[coordinate.joint])) {
-      request.inputs.push_back("effort:" + coordinate.name);
-      request.outputs.push_back("velocity:" + coordinate.name);
-    }
-  if (request.inputs.empty()) return out;
-  scene::SceneDescription scene = simulation.scene();
+/// Inertia of all that a rotary joint moves, rotor included [kg m^2].
+double whole_inertia(const Model& model, const Coordinate& coordinate) {
+  const JointMap& joint = model.joints[coordinate.joint];
+  Vector3 axis = joint.rotation.normalized();
+  if (joint.master >= 0) axis = model.nodes[joint.master].rotation * axis;
+  return moved_inertia(model, joint, axis) + armature(model, coordinate);
+}
+
+/// The scene at rest and without loads. A load that accelerates the bare end of a beam would bend it at once, so that
+/// the end would seem softer.
+scene::SceneDescription at_rest(scene::SceneDescription scene) {
   scene.servos.clear();
   scene.starts_in_equilibrium = false;
-  // Linearise at rest and without loads. A load that accelerates the bare end of a beam bends it at once, so that the
-  // end would seem softer.
   scene.gravity.setZero();
   scene.efforts.clear();
   scene.loads.clear();
   scene.distributed_loads.clear();
   for (scene::InitialJoint& joint : scene.initial_joints) joint.velocity = 0;
+  for (scene::JointDescription& joint : scene.joints) joint.friction = 0;
+  return scene;
+}
+
+/// The effective inertia that an effort on a coordinate feels for `time`, by one step of that length [kg m^2]. NaN if
+/// there is no such step.
+double resistance(Simulation& simulation, std::size_t coordinate, double time) {
+  simulation.reset();
+  const double whole = whole_inertia(model_of(simulation), model_of(simulation).coordinates[coordinate]);
+  const double effort = kSmallTurn * whole / (time * time);
+  simulation.command_effort(coordinate, effort);
+  if (!simulation.step().converged) return std::numeric_limits<double>::quiet_NaN();
+  return time * effort / simulation.velocity(coordinate);
+}
+
+/// For each driven joint that rotates, the effective inertia that its drive feels for `time`, without servos [kg m^2].
+/// Empty if the model is too large, or cannot make a step.
+std::map<std::string, double> resistances(const Simulation& simulation, double time) {
+  std::map<std::string, double> out;
+  if (simulation.degrees_of_freedom() > kMostUnknowns) return out;
+  const Model& model = model_of(simulation);
+  const std::vector<bool> at_beam = nodes_at_beams(model);
+  std::vector<std::size_t> driven;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    if (is_driven(model, model.coordinates[i], at_beam) && turns(model.joints[model.coordinates[i].joint]))
+      driven.push_back(i);
+  if (driven.empty()) return out;
+  SimulationOptions options;
+  options.scheme = "em";
+  options.step = time;
+  options.tolerance = kTolerance;
   try {
-    const LinearModel linear = linearise(Simulation(scene), request);
-    const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(linear.a.rows(), linear.a.cols()) - 0.5 * time * linear.a;
-    const Eigen::MatrixXd velocities = linear.c * left.partialPivLu().solve(time * linear.b);
-    for (std::size_t i = 0; i < request.inputs.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      out[request.inputs[i].substr(request.inputs[i].find(':') + 1)] = time / velocities(k, k);
+    Simulation resting(at_rest(simulation.scene()), options);
+    for (const std::size_t i : driven) {
+      const double found = resistance(resting, i, time);
+      if (std::isfinite(found)) out[model.coordinates[i].name] = found;
     }
-  } catch (const std::exception&) {  // a mechanism that has no linear model
+  } catch (const std::exception&) {  // a mechanism that cannot start at rest
   }
   return out;
 }
@@ -135,10 +159,7 @@ std::vector<DrivenEnd> driven_ends(const Simulation& simulation) {
   for (const Coordinate& coordinate : model.coordinates) {
     const auto found = within_step.find(coordinate.name);
     if (found == within_step.end()) continue;
-    const JointMap& joint = model.joints[coordinate.joint];
-    Vector3 axis = joint.rotation.normalized();
-    if (joint.master >= 0) axis = model.nodes[joint.master].rotation * axis;
-    const double whole = moved_inertia(model, joint, axis) + armature(model, coordinate);
+    const double whole = whole_inertia(model, coordinate);
     if (found->second < kSmallPart * whole)
       ends.push_back({coordinate.name, found->second, whole, 2 * found->second / simulation.step_size()});
   }
