@@ -176,14 +176,12 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
   part.demand.limit = servo_limit(configuration_.model(), actuator);
   part.input = servo_input(actuator, part, state);
   if (servo.sample_time > 0 && configuration_.step() != 0) {
-    const TimeFunction* history = set_point_function(configuration_.model(), servo, state.servo);
-    const double time = part.input.time;
-    const double set_rate = set_rate_of_sample(servo, state.servo, history, time, kRoundOff * configuration_.step());
+    const double time = part.input.time, step = configuration_.step();
     part.servo = state.servo;
-    // A sampled servo takes the value at the beginning of the step.
-    if (servo.feedforward >= 0) part.input.feedforward = configuration_.model().histories[servo.feedforward](time);
-    sample(servo, part.input, set_rate, part.servo);
-    part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
+    sample(servo,
+           sampled_input(configuration_.model(), servo, state.servo, part.input.measured.begin, time, kRoundOff * step),
+           part.servo);
+    part.demand.constant += held_output(servo, part.servo, time, step);
     return;
   }
   const ServoLaw& law = law_of(servo, state.servo);

@@ -174,26 +174,19 @@ std::size_t outputs_of(const Servo& servo) {
   return servo.sample_time > 0 ? 2 + static_cast<std::size_t>(std::ceil(servo.delay / servo.sample_time)) : 0;
 }
 
-double set_rate_of_sample(const Servo& servo, const ServoCommand& command, const TimeFunction* history, double time,
-                          double tolerance) {
-  const double period = servo.sample_time;
-  if (!history) return command.set_rate_at(time - 0.5 * period, tolerance);
-  return ((*history)(time) - (*history)(time - period)) / period;
-}
-
-void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state) {
+void sample(const Servo& servo, const SampledInput& input, ServoState& state) {
   assert(servo.sample_time > 0 && state.outputs.size() == outputs_of(servo));
   const double period = servo.sample_time;
-  if (input.time < state.samples * period - kRoundOff * input.measured.step) return;
+  if (input.time < state.samples * period - input.tolerance) return;
   const ServoLaw& law = law_of(servo, state);
-  const double measured = input.measured.begin, rate = (measured - state.measured) / period;
+  const double rate = (input.measured - state.measured) / period;
   double output = input.feedforward;
   if (law.mode == ServoMode::Effort) {
-    output += input.set_point.begin;
+    output += input.set_point;
   } else {
     const bool is_velocity = law.mode == ServoMode::Velocity;
-    const double error_rate = (is_velocity ? input.set_point.begin : set_rate) - rate;
-    const double error = input.set_point.begin - measured;
+    const double error_rate = (is_velocity ? input.set_point : input.set_rate) - rate;
+    const double error = input.set_point - input.measured;
     state.integral += period * (is_velocity ? error_rate : error);
     output += law.proportional * (is_velocity ? state.integral : error) + law.derivative * error_rate +
               law.integral * state.integral;
@@ -203,7 +196,7 @@ void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoS
   if (law.tracking_time > 0 && gain > 0) state.integral += period * (cut - output) / (gain * law.tracking_time);
   std::rotate(state.outputs.begin(), state.outputs.end() - 1, state.outputs.end());
   state.outputs.front() = cut;
-  state.measured = measured;
+  state.measured = input.measured;
   ++state.samples;
 }
 

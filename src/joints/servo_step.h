@@ -85,13 +85,18 @@ double hand_to_integral(const ServoLaw& law, double error, ServoState& state);
 
 // ---- sampled controllers
 
-/// Returns the mean rate of the set point since the last sample. `history`: the function of the scene that it follows,
-/// or null. `tolerance`: for the time at which a commanded set point arrives [s].
-double set_rate_of_sample(const Servo& servo, const ServoCommand& command, const TimeFunction* history, double time,
-                          double tolerance);
-
-/// Takes a sample if one is due. `set_rate`: mean rate of the set point since the last sample.
-void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state);
+/// What a sampled controller is given at the time of a sample. Where a function of time jumps then, its value is that
+/// after the jump.
+struct SampledInput {
+  double time = 0;         ///< [s]
+  double tolerance = 0;    ///< times may be earlier by this, since they are sums with round-off [s]
+  double measured = 0;     ///< the position of the rotor or of the coordinate
+  double set_point = 0;    ///< in the unit of the mode
+  double set_rate = 0;     ///< mean rate of the set point since the last sample
+  double feedforward = 0;  ///< [N m or N]
+};
+/// Takes a sample if one is due.
+void sample(const Servo& servo, const SampledInput& input, ServoState& state);
 /// Returns the mean of the held output over the step.
 double held_output(const Servo& servo, const ServoState& state, double time, double step);
 /// Returns how many outputs the controller's memory needs.
