@@ -109,7 +109,7 @@ void Mechanism::add_coordinates(const scene::JointDescription& joint, const std:
     coordinate.effort_limit = joint.effort_limit;
     if (joint.limits) {
       coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
-      if (joint.limits->restitution) coordinate.limit->damping = damping_for(*joint.limits->restitution);
+      if (joint.limits->restitution) coordinate.limit->damping_ratio = stop_damping_ratio(*joint.limits->restitution);
     }
     model.coordinates.push_back(coordinate);
   }

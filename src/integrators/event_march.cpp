@@ -43,7 +43,7 @@ EventMarch::EventMarch(const Model& model, const Scheme& scheme)
     if (!model.coordinates[i].limit) continue;
     const StopPenalty penalty = stop_penalty(model.coordinates[i], contact_time_);
     for (int side = 0; side < 2; ++side)
-      corners_.push_back({false, static_cast<int>(i), side, at_end_ ? penalty.end_damping : penalty.damping});
+      corners_.push_back({false, static_cast<int>(i), side, penalty.damping});
   }
   const std::vector<FrictionCarrier>& carriers = system_.friction().carriers();
   for (std::size_t c = 0; c < carriers.size(); ++c)
@@ -101,7 +101,7 @@ StopReach EventMarch::reach(const Corner& corner, const Model& model, const Stat
   const Coordinate& coordinate = model.coordinates[corner.coordinate];
   return stop_reach(*coordinate.limit, stop_penalty(coordinate, contact_time_), corner.place == 1,
                     state.released[coordinate.joint].displacement[coordinate.component % 3],
-                    rate(model, state, corner.coordinate), at_end_);
+                    rate(model, state, corner.coordinate));
 }
 
 double EventMarch::guard(std::size_t index, int stage, const Model& model, const State& state) {
@@ -150,7 +150,7 @@ bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
     const StopPenalty penalty = stop_penalty(coordinate, contact_time_);
     const double mean = (end - begin) / configuration.step();
     const auto is_quiet = [&](double position, double speed) {
-      const StopReach now = stop_reach(limit, penalty, corner.place == 1, position, speed, at_end_);
+      const StopReach now = stop_reach(limit, penalty, corner.place == 1, position, speed);
       return now.depth > 0 && std::abs(corner.damping * now.rate) <= kQuiet * now.push;
     };
     if (!is_quiet(begin, rate(model_, state, corner.coordinate)) || !is_quiet(end, mean)) return true;

@@ -23,6 +23,10 @@ void ExplicitStep::find_efforts(const State& state, const std::vector<double>& n
     const ExplicitRotors::Motion link = link_motion(i, numbers);
     const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
     double& applied = applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
+    if (const int place = margin_places_[i]; place >= 0) {
+      margins_[place] = coordinate.effort_limit - of_scene;
+      margins_[place + 1] = coordinate.effort_limit + of_scene;
+    }
     if (coordinate.motion >= 0) {
       efforts_[places_[i]] = applied = 0;  // until the motion is known to need one
     } else if (coordinate.actuator >= 0) {
@@ -55,8 +59,11 @@ void ExplicitStep::add_passive(std::size_t coordinate, const ExplicitRotors::Mot
   if (resists(data)) {
     CoordinateStep now{link.angle, link.angle, link.rate, 1};
     now.at_end = true;
+    now.below = events_.contacts(coordinate)[0];
+    now.above = events_.contacts(coordinate)[1];
     const double passive = passive_effort(data, penalties_[coordinate], now).effort;
     now.increment = 0;
+    now.below = now.above = StopContact::ByDepth;
     const double elastic = passive_effort(data, penalties_[coordinate], now).effort;
     effort += passive;
     change[work_ + 1] -= (passive - elastic) * link.rate;

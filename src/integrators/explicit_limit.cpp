@@ -130,7 +130,7 @@ ExplicitLimit explicit_limit(const Model& model, const Scheme& scheme, const Sta
     const StopPenalty stop = stop_penalty(model.coordinates[i], scheme.contact_time);
     std::vector<Resistance> stiff, viscous;
     parts.add(stiff, static_cast<int>(i), "stop", 1, 0, stop.stiffness);
-    parts.add(viscous, static_cast<int>(i), "stop", 1, 0, stop.end_damping);
+    parts.add(viscous, static_cast<int>(i), "stop", 1, 0, stop.damping);
     judge(stiff, viscous);
   }
   return limit;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "joints/motor_step.h"
 #include "joints/set_points.h"
 
 namespace flexarm {
@@ -32,9 +31,15 @@ ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tablea
       inputs_(model.actuators.size()),
       kept_inputs_(model.actuators.size()) {
   varies_.reserve(model.histories.size());
+  margin_places_.reserve(model.actuators.size());
   for (const TimeFunction& history : model.histories) varies_.push_back(!history.constant());
   for (std::size_t i = 0; i < sampled_.size(); ++i)
     if (model.actuators[i].servo) sampled_[i].outputs.resize(outputs_of(*model.actuators[i].servo));
+  for (const Actuator& actuator : model.actuators) {
+    const bool is_limited = std::isfinite(std::min(servo_limit(model, actuator), actuator.drive.effort_limit));
+    margin_places_.push_back(is_limited ? static_cast<int>(margins_.size()) : -1);
+    if (is_limited) margins_.resize(margins_.size() + 2);
+  }
 }
 
 bool ExplicitMotors::has_servo(std::size_t actuator) const {
@@ -65,15 +70,8 @@ void ExplicitMotors::take_sample(const Actuator& actuator, const ActuatorState& 
                                  ServoState& servo) const {
   const Servo& data = *actuator.servo;
   servo = own.servo;
-  ServoInput input;
-  input.time = begin_;
-  input.measured.step = step_;
-  input.measured.begin = data.on_link ? link_position : own.angle;
-  const TimeFunction* history = set_point_function(model_, data, own.servo);
-  const double set = set_point_at(model_, data, own.servo, begin_);
-  input.set_point = {set, set};
-  if (data.feedforward >= 0) input.feedforward = model_.histories[data.feedforward](begin_);
-  sample(data, input, set_rate_of_sample(data, own.servo, history, begin_, kOffSample * step_), servo);
+  const double measured = data.on_link ? link_position : own.angle;
+  sample(data, sampled_input(model_, data, own.servo, measured, begin_, kOffSample * step_), servo);
 }
 
 void ExplicitMotors::set_instant(const State& state, std::size_t stage, double part,
@@ -104,21 +102,29 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
 
 // ---------------------------------------------------------------- efforts
 
+double ExplicitMotors::cut(std::size_t actuator, const MotorRange& range, double demand) {
+  if (const int place = margin_places_[actuator]; place >= 0) {
+    margins_[place] = range.highest - demand;
+    margins_[place + 1] = demand - range.lowest;
+  }
+  return std::clamp(demand, range.lowest, range.highest);
+}
+
 double ExplicitMotors::effort(std::size_t actuator, const State& state, double other,
                               const ExplicitRotors::Motion& rotor, const ExplicitRotors::Motion& link, double integral,
-                              double& integral_rate) const {
+                              double& integral_rate) {
   const Actuator& data = model_.actuators[actuator];
   integral_rate = 0;
   const MotorRange range = motor_range(data.drive, servo_limit(model_, data), rotor.rate);
-  if (!data.servo) return std::clamp(other, range.lowest, range.highest);
+  if (!data.servo) return cut(actuator, range, other);
   const Servo& servo = *data.servo;
   const Input& input = inputs_[actuator];
   if (input.off > 0) return 0;
-  if (servo.sample_time > 0) return std::clamp(other + input.held, range.lowest, range.highest);
+  if (servo.sample_time > 0) return cut(actuator, range, other + input.held);
   const ServoLaw& law = law_of(servo, state.actuators[actuator].servo);
   const ExplicitRotors::Motion& measured = servo.on_link ? link : rotor;
   const ServoInstant at{input.set_point, input.set_rate, measured.angle, measured.rate, integral, input.feedforward};
-  const double demand = other + servo_effort(law, at), given = std::clamp(demand, range.lowest, range.highest);
+  const double demand = other + servo_effort(law, at), given = cut(actuator, range, demand);
   if (law.mode == ServoMode::Effort) return given;
   const bool is_velocity = law.mode == ServoMode::Velocity;
   integral_rate = input.set_point - (is_velocity ? measured.rate : measured.angle);

@@ -5,6 +5,7 @@
 
 #include "integrators/explicit_rotors.h"
 #include "integrators/stage_derivatives.h"
+#include "joints/motor_step.h"
 #include "joints/servo_step.h"
 #include "model/model.h"
 #include "model/state.h"
@@ -30,7 +31,10 @@ class ExplicitMotors {
   /// `link`: motion of the coordinate. `integral`: of its servo. `integral_rate`: output, the derivative of the
   /// integral.
   double effort(std::size_t actuator, const State& state, double other, const ExplicitRotors::Motion& rotor,
-                const ExplicitRotors::Motion& link, double integral, double& integral_rate) const;
+                const ExplicitRotors::Motion& link, double integral, double& integral_rate);
+  /// How far the efforts of motors with limits were below the highest one, and above the lowest one, when effort() was
+  /// called last [N m or N].
+  const std::vector<double>& margins() const { return margins_; }
   /// The impulse of the motor by what jumps of the set point, times the gain of the derivative: at the beginning
   /// of the step, or in it after that. It is zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
   double first_impulse(std::size_t actuator, const State& state) const;
@@ -52,6 +56,8 @@ class ExplicitMotors {
   double impulse_by(std::size_t actuator, const State& state, double from, double to, double smooth) const;
   /// Whether an actuator has a servo that moves its coordinate.
   bool has_servo(std::size_t actuator) const;
+  /// Cuts an effort at the motor's limits.
+  double cut(std::size_t actuator, const MotorRange& range, double demand);
   void take_sample(const Actuator& actuator, const ActuatorState& own, double link_position, ServoState& servo) const;
 
   const Model& model_;
@@ -64,6 +70,8 @@ class ExplicitMotors {
   std::vector<double> held_;                        // mean output of sampled servos over the step
   std::vector<double> first_;                       // set points at the beginning, after a jump there
   std::vector<Input> inputs_, kept_inputs_;
+  std::vector<int> margin_places_;  // among the margins; -1: the motor has no limit
+  std::vector<double> margins_;
 };
 
 }  // namespace flexarm

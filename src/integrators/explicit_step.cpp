@@ -29,6 +29,23 @@ const Model& suitable(const Model& model, const Scheme& scheme) {
 /// above the round-off of times at which functions jump.
 constexpr double kInwards = 1e-9;
 
+/// Places of the margins of efforts behind those of motors; -1 where an effort has no limit, or a motor gives it.
+std::vector<int> margin_places(const Model& model, std::size_t first) {
+  std::vector<int> places;
+  places.reserve(model.coordinates.size());
+  int next = static_cast<int>(first);
+  for (const Coordinate& coordinate : model.coordinates) {
+    const bool is_cut = coordinate.effort >= 0 && coordinate.actuator < 0 && coordinate.effort_limit > 0;
+    places.push_back(is_cut ? next : -1);
+    if (is_cut) next += 2;
+  }
+  return places;
+}
+
+std::size_t count_if_placed(const std::vector<int>& places) {
+  return static_cast<std::size_t>(std::count_if(places.begin(), places.end(), [](int place) { return place >= 0; }));
+}
+
 int position_count(JointMapKind kind) {
   switch (kind) {
     case JointMapKind::Scalar:
@@ -52,6 +69,9 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
       motors_(model, tableau_),
       rotors_(model),
       reactions_(model),
+      margin_places_(margin_places(model, motors_.margins().size())),
+      margins_(motors_.margins().size() + 2 * count_if_placed(margin_places_)),
+      events_(model, scheme.contact_time, margins_.size()),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
@@ -256,6 +276,11 @@ bool ExplicitStep::find_impulses(const State& state, std::size_t stage) {
   return jumps;
 }
 
+const std::vector<double>& ExplicitStep::margins() {
+  std::copy(motors_.margins().begin(), motors_.margins().end(), margins_.begin());
+  return margins_;
+}
+
 /// Half of the work of impulses on rotors with a motion of their own, if all of it were done at their present rates.
 double ExplicitStep::half_work_on_rotors(const std::vector<double>& numbers) const {
   double work = 0;
@@ -285,51 +310,6 @@ bool ExplicitStep::strike(const State& state, std::size_t stage, std::vector<dou
   bodies_.set(released_, numbers.data() + rates_);
   numbers[work_] += half_work_on_rotors(numbers);
   return true;
-}
-
-StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses) {
-  using Reason = StepResult::Reason;
-  const bool goes_on = reuses && is_as_left(state);
-  const auto fail = [&](Reason reason) {
-    last_nodes_.clear();  // what was known at the end of the last step is lost
-    return reason;
-  };
-  if (goes_on)
-    begin_ = stage_;
-  else
-    pack(state);
-  begin_[work_] = begin_[work_ + 1] = 0;
-  motors_.begin(state, step);
-  find_inputs(state, step, 0);
-  if (dependent_.any() && !begin_dependent(state, step, begin_[work_])) return fail(Reason::DeadPoint);
-  if (!strike(state, 0, begin_)) return fail(Reason::DeadPoint);
-  const std::size_t stages = changes_.size();
-  if (goes_on && acts_as_before(state))
-    changes_[0] = last_change_;
-  else if (!evaluate(state, 0, begin_, changes_[0]))
-    return fail(Reason::DeadPoint);
-  for (std::size_t s = 1; s <= stages; ++s) {
-    const std::vector<double>& weights = s < stages ? tableau_.stages[s] : tableau_.weights;
-    stage_ = begin_;
-    for (std::size_t r = 0; r < weights.size(); ++r) {
-      if (weights[r] == 0) continue;
-      const double weight = step * weights[r];
-      for (std::size_t i = 0; i < stage_.size(); ++i) stage_[i] += weight * changes_[r][i];
-    }
-    find_inputs(state, step, s);
-    if (s < stages && !evaluate(state, s, stage_, changes_[s])) return fail(Reason::DeadPoint);
-  }
-  const auto is_finite = [](double number) { return std::isfinite(number); };
-  if (!std::all_of(stage_.begin(), stage_.end(), is_finite)) return fail(Reason::NotFinite);
-  normalise(stage_);
-  if (!strike(state, stages, stage_)) return fail(Reason::DeadPoint);
-  const double work = stage_[work_], dissipated = stage_[work_ + 1];
-  if (!evaluate(state, stages, stage_, last_change_)) return fail(Reason::DeadPoint);
-  if (dependent_.any() && dependent_.largest_opening(bodies_) > kOpenLoop) return fail(Reason::OpenLoop);
-  state.work += work;
-  state.dissipated += dissipated;
-  write(state, step);
-  return Reason::None;
 }
 
 void ExplicitStep::write(State& state, double step) {

@@ -5,11 +5,11 @@
 
 #include "flexarm/model/results.h"
 #include "integrators/dependent_rates.h"
+#include "integrators/explicit_events.h"
 #include "integrators/explicit_motors.h"
 #include "integrators/explicit_reactions.h"
 #include "integrators/explicit_rotors.h"
 #include "joints/articulated_bodies.h"
-#include "joints/joint_stop.h"
 #include "model/state.h"
 #include "schemes/scheme.h"
 
@@ -26,9 +26,10 @@ class ExplicitStep {
   /// @throws ModelError naming what explicit schemes cannot simulate, if the model has some of it
   ExplicitStep(const Model& model, const Scheme& scheme);
 
-  /// Advances the state by a step [s]. Returns why it cannot, and leaves the state as it was then: numbers are no
-  /// longer finite, or a loop is at a dead point or opens. `reuses`: the step may use accelerations that the last step
-  /// computed at its end. Without it, a run that continues from a restored state has the same bits.
+  /// Advances the state by a step [s], in pieces that end at events (ExplicitEvents). Returns why it cannot, and
+  /// leaves the state as it was then: numbers are no longer finite, or a loop is at a dead point or opens. `reuses`:
+  /// the step may use accelerations that the last step computed at its end. Without it, a run that continues from a
+  /// restored state has the same bits.
   StepResult::Reason advance(State& state, double step, bool reuses);
 
   /// Derivatives of the rates of all joints with respect to efforts on them, at a state: the inverse of the mass
@@ -43,6 +44,18 @@ class ExplicitStep {
     int first_position, first_rate;
     JointMapKind kind;
   };
+  /// Makes a step from the state, which stays as it is. `goes_on`: the last step ended there. `keeps_contacts`: stops
+  /// push as in the last attempt; else, as they do in the state.
+  StepResult::Reason attempt(const State& state, double step, bool goes_on, bool keeps_contacts);
+  /// Attempts shorter steps, until one ends just behind the first event. `whole`: the
+  /// step of the caller; `length`: of the last attempt, before and after [s].
+  StepResult::Reason end_at_event(const State& state, double whole, double& length);
+  /// Attempts the rest of a step, or its first piece.
+  StepResult::Reason attempt_piece(const State& state, double whole, double rest, bool goes_on, double& length);
+  /// Attempts the rest of a step with stops that push where they are penetrated.
+  StepResult::Reason attempt_freely(const State& state, double rest, double& length);
+  /// Takes the state to the end of the last attempt.
+  void accept(State& state, double step);
   void pack(const State& state);
   void unpack(const std::vector<double>& numbers);
   /// Finds what depends on time at a part of a step, which is that of a stage or of the end.
@@ -63,6 +76,9 @@ class ExplicitStep {
              const std::vector<double>& numbers, std::vector<double>& change, double& applied);
   ExplicitRotors::Motion link_motion(std::size_t coordinate, const std::vector<double>& numbers) const;
   bool find_impulses(const State& state, std::size_t stage);
+  /// Those of motors, and how far efforts of the scene on other coordinates were from their limits, when efforts were
+  /// found last [N m or N].
+  const std::vector<double>& margins();
   double half_work_on_rotors(const std::vector<double>& numbers) const;
   void normalise(std::vector<double>& numbers) const;
   void write_positions(std::vector<double>& numbers) const;
@@ -79,6 +95,9 @@ class ExplicitStep {
   ExplicitMotors motors_;
   ExplicitRotors rotors_;
   ExplicitReactions reactions_;
+  std::vector<int> margin_places_;  // per coordinate: of its effort's margins; -1: it has no limit, or a motor
+  std::vector<double> margins_;
+  ExplicitEvents events_;
   std::vector<Joint> joints_;
   std::vector<StopPenalty> penalties_;  // per coordinate
   std::vector<int> places_;             // per coordinate: its rate; -1: it is held
@@ -92,6 +111,8 @@ class ExplicitStep {
   std::vector<double> begin_, stage_, before_;
   std::vector<std::vector<double>> changes_;  // per stage
   std::vector<double> last_change_, last_commands_;
+  double gained_work_ = 0, lost_ = 0;  // in the last attempt [J]
+  State kept_;                         // at the beginning of a step in pieces
   std::size_t rates_ = 0, work_ = 0, integrals_ = 0,
               own_ = 0;                       // where the rates, work and dissipation, and so on begin
   std::vector<int> varying_;                  // functions of time that are not constant

@@ -317,7 +317,10 @@ CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double incr
   step.step = step_;
   step.at_end = !scheme_.is_incremental();
   if (modes_) step.below = modes_->stops[index][0], step.above = modes_->stops[index][1];
-  if (step.at_end) step.gamma = scheme_.gamma, step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
+  if (!step.at_end) return step;
+  step.gamma = scheme_.gamma;
+  step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
+  step.blur = scheme_.blur;
   return step;
 }
 

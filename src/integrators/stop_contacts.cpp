@@ -79,9 +79,8 @@ void StopContacts::note_events(FirstEvent& first) {
 
 void StopContacts::note_leaving(const Stopped& stopped, bool is_above, FirstEvent& first) const {
   const Coordinate& limited = coordinate(stopped);
-  const bool at_end = configuration_.coordinate_step(stopped.index, 0).at_end;
   const auto push = [&](double position, double rate) {
-    return stop_reach(*limited.limit, stopped.penalty, is_above, position, rate, at_end).push;
+    return stop_reach(*limited.limit, stopped.penalty, is_above, position, rate).push;
   };
   const double before = push(begin_position(stopped), begin_rate(stopped));
   const double after = push(position(limited), configuration_.end_rate(limited));

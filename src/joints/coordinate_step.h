@@ -21,6 +21,9 @@ struct CoordinateStep {
   double step = 0;            ///< length of the step [s]; 0: statics (no damping, no friction)
   double gamma = 1, begin_rate = 0;
   bool at_end = false;  ///< efforts are those at the end of the step; else means over it, with exact work
+  /// With `at_end`: steps of this length [s] do not find where stops are touched, and spread what jumps there (see
+  /// stop_effort()). 0: the laws as they are at an instant.
+  double blur = 0;
   StopContact below = StopContact::ByDepth, above = StopContact::ByDepth;
 };
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "joints/penetration.h"
-#include "joints/stop_restitution.h"
 #include "math/pi.h"
 
 namespace flexarm {
@@ -17,7 +16,7 @@ namespace {
 constexpr double kLargestPart = 0.5;
 /// Stop and coordinate form an oscillator. These are the largest phase angles by which a step may advance it. The angle
 /// is smaller for forces at the end of the step, which are only of first order when the stop is touched and left.
-constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 8;
+constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 16;
 /// Largest change of the oscillation over a step, relative to its amplitude, that counts as resting on the stop.
 constexpr double kSwing = 0.5;
 /// A step may cross at most this part of the remaining way to the largest penetration.
@@ -43,15 +42,27 @@ Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penet
           penalty.damping * x1.slope / step, end.is_held};
 }
 
-/// The push at an instant. The damper's effort grows from zero within the first step of a hit, since the rate jumps at
-/// touch.
-Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at, double rate, double rate_slope) {
+/// The rate that the damper feels, and its derivatives with respect to the hardened penetration and the rate.
+struct FeltRate {
+  double value, by_depth, by_rate;
+};
+
+/// With s = x / (rate blur), the damper feels (4 s - 3 s^2) rate until s = 1. The mean of this factor over s is 1, so
+/// that the impulse is the same as without blur. (docs/notes/stops.md 4)
+FeltRate felt_rate(const Penetration& at, double depth, double rate, double blur) {
+  const double way = rate * blur;
+  if (at.is_held || way <= depth) return {rate, 0, 1};
+  const double s = depth / way;
+  return {(4 - 3 * s) * s * rate, (4 - 6 * s) / blur, 3 * s * s};
+}
+
+/// The push at an instant.
+Push push_at(const StopPenalty& penalty, double blur, const Penetration& at, double rate, double rate_slope) {
   const Hardened x = hardened(at);
-  const double k = penalty.stiffness, c = penalty.end_damping, ramp = frequency / kRampAngle;
-  const bool takes_hold = ramp * x.value < rate;
-  const double felt = takes_hold ? ramp * x.value : rate, felt_slope = takes_hold ? ramp * x.slope : rate_slope;
-  return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt,
-          c * (x.curvature * felt + x.slope * felt_slope), at.is_held};
+  const double k = penalty.stiffness, c = penalty.damping;
+  const FeltRate felt = felt_rate(at, x.value, rate, blur);
+  return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt.value,
+          c * (x.curvature * felt.value + x.slope * (felt.by_depth * x.slope + felt.by_rate * rate_slope)), at.is_held};
 }
 
 /// One side of a stop. `sign`: direction of its effort on the coordinate.
@@ -93,11 +104,9 @@ double frequency(const LimitStop& limit, const StopPenalty& penalty) {
 
 /// Effort against the penetration at the end of the step. With Newmark's rule, its work over the step is that of the
 /// mean of the efforts at both ends.
-PassiveEffort effort_at_end(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
-                            const CoordinateStep& change) {
-  const double scale = frequency(limit, penalty);
-  const Push begin = push_at(penalty, scale, side.begin, -side.sign * change.begin_rate, 0);
-  const Push end = push_at(penalty, scale, side.end, -side.sign * rate_of(change), rate_slope(change));
+PassiveEffort effort_at_end(const StopPenalty& penalty, const Side& side, const CoordinateStep& change) {
+  const Push begin = push_at(penalty, change.blur, side.begin, -side.sign * change.begin_rate, 0);
+  const Push end = push_at(penalty, change.blur, side.end, -side.sign * rate_of(change), rate_slope(change));
   const double x0 = hardened(side.begin).value, x1 = hardened(side.end).value;
   const double stored = 0.5 * penalty.stiffness * (x1 - x0) * (x1 + x0);
   const double work = 0.5 * (begin.value() + end.value()) * (side.end.depth - side.begin.depth);
@@ -111,14 +120,13 @@ PassiveEffort mean_effort(const StopPenalty& penalty, const Side& side, double s
 }
 
 /// Effort of one side against the penetration.
-PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
-                       const CoordinateStep& change) {
+PassiveEffort one_side(const StopPenalty& penalty, const Side& side, const CoordinateStep& change) {
   if (side.is_off || (!side.begin.is_felt() && !side.end.is_felt())) return {};
   if (change.step == 0) {
     const Push push = push_at(penalty, 0, side.end, 0, 0);
     return {push.elastic, push.elastic_slope, 0};
   }
-  if (change.at_end) return effort_at_end(limit, penalty, side, change);
+  if (change.at_end) return effort_at_end(penalty, side, change);
   return mean_effort(penalty, side, change.step);
 }
 
@@ -126,17 +134,15 @@ PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const
 
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
   if (!coordinate.limit) return {};
-  assert(contact_time > 0 && coordinate.limit->damping.of_means > 0);
-  const auto& [of_means, at_end] = coordinate.limit->damping;
+  assert(contact_time > 0 && coordinate.limit->damping_ratio > 0);
   const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
-  const double damping = 2 * of_means * inertia * omega;
-  return {inertia * omega * omega, damping, at_end / of_means * damping};
+  return {inertia * omega * omega, 2 * coordinate.limit->damping_ratio * inertia * omega};
 }
 
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
   PassiveEffort out;
   for (const Side& side : held_sides(limit, change)) {
-    const PassiveEffort push = one_side(limit, penalty, side, change);
+    const PassiveEffort push = one_side(penalty, side, change);
     out.effort += side.sign * push.effort;
     out.slope -= push.slope;
     out.dissipated += push.dissipated;
@@ -144,14 +150,11 @@ PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, co
   return out;
 }
 
-StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate,
-                     bool at_end) {
+StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate) {
   Side side = sides(limit, position, position)[is_above];
   side.end.is_held = true;
   const double inward = -side.sign * rate, x = hardened(side.end).value;
-  const double ramp = frequency(limit, penalty) / kRampAngle;
-  const double viscous = at_end ? penalty.end_damping * std::min(inward, ramp * x) : penalty.damping * inward;
-  return {side.end.depth, inward, penalty.stiffness * x + viscous};
+  return {side.end.depth, inward, penalty.stiffness * x + penalty.damping * inward};
 }
 
 double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position) {

@@ -6,7 +6,8 @@
 /// y the mean of x at both ends of a step,
 ///   effort = dx/dp (k y + c dp/dt),   energy k x^2 / 2,
 /// where dx/dp is the quotient of the increments. So work and energy agree exactly. In terms of x and the rate, every
-/// hit is that of a linear spring and damper, with the same restitution at all speeds.
+/// hit is that of a linear spring and damper, with the same restitution at all speeds. At an instant the effort is the
+/// limit of that for short steps. It never pulls.
 
 #include "joints/coordinate_step.h"
 #include "model/model.h"
@@ -15,24 +16,23 @@ namespace flexarm {
 
 /// Stiffness and damping of a coordinate's stops for small penetrations.
 struct StopPenalty {
-  double stiffness = 0;    ///< [N/m or N m/rad]
-  double damping = 0;      ///< for means over a step [N s/m or N m s/rad]
-  double end_damping = 0;  ///< for forces at the end of a step [N s/m or N m s/rad]
+  double stiffness = 0;  ///< [N/m or N m/rad]
+  double damping = 0;    ///< [N s/m or N m s/rad]
 };
-/// Returns the penalty with which an undamped contact lasts `contact_time` [s], and with the damping ratios of
-/// LimitStop::damping.
+/// Returns the penalty with which an undamped contact lasts `contact_time` [s], with LimitStop::damping_ratio.
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 
-/// Returns the effort of both stops on the coordinate.
+/// Returns the effort of both stops on the coordinate. With CoordinateStep::blur the damper takes hold over the way that
+/// the coordinate makes in that time, so that the effort does not jump at touch; the impulse is the same.
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
 /// One side of a stop at an instant: the penetration (< 0 outside), its rate, and the push divided by dx/dp (< 0 if the
 /// stop would have to pull). The law for penetrations > 0 is also used outside, so all of these are smooth at touch.
+/// The stop acts where depth and push are > 0.
 struct StopReach {
   double depth, rate, push;
 };
-/// `rate`: of the coordinate; `at_end`: see CoordinateStep.
-StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate,
-                     bool at_end);
+/// `rate`: of the coordinate.
+StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate);
 /// Returns the elastic energy at `position` [J].
 double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position);
 /// Returns the damping coefficient at rest at `position`: minus the derivative of the effort with respect to the rate

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cassert>
-#include <cmath>
 
 namespace flexarm {
 namespace {
@@ -35,33 +34,20 @@ double speed_at_release(Oscillator contact) {
   return -contact.v;
 }
 
-double restitution_of_means(double ratio) {
+double restitution_of(double ratio) {
   return speed_at_release(Oscillator{0, 1, ratio}.after(1e-6));
-}
-
-/// In the first phase, the damper acts as a second spring, until it reaches its full force. This function starts at the
-/// end of that phase.
-double restitution_at_end(double ratio) {
-  const double v = 1 / std::sqrt(1 + kRampAngle * kRampAngle + 2 * ratio * kRampAngle);
-  return speed_at_release({kRampAngle * v, v, ratio});
-}
-
-/// Returns the damping ratio for a restitution, by bisection; the restitution decreases with the ratio.
-template <class Restitution>
-double ratio_for(const Restitution& restitution, double value) {
-  double low = 0, high = 10;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (restitution(middle) > value ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace
 
-StopDamping damping_for(double restitution) {
+double stop_damping_ratio(double restitution) {
   assert(restitution >= 0.05 && restitution <= 1);
-  return {ratio_for(restitution_of_means, restitution), ratio_for(restitution_at_end, restitution)};
+  double low = 0, high = 10;  // bisection: the restitution decreases with the ratio
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (restitution_of(middle) > restitution ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace flexarm

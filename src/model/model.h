@@ -1,6 +1,7 @@
 #pragma once
 /// The constant data of a mechanism: nodes, elements, joints, loads. It does not change after building.
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -29,20 +30,15 @@ struct NodalInertia {
   bool empty() const { return mass == 0 && rotary.isZero(0) && beam_rotary.isZero(0) && rotary_damping.isZero(0); }
 };
 
-/// Damping ratios of a stop: its damping over the critical damping of the oscillator that stop and coordinate form. One
-/// is for schemes whose forces are means over a step, one for schemes with forces at its end. The defaults give a
-/// restitution of 0.3 (joints/stop_restitution.h).
-struct StopDamping {
-  double of_means = 0.497239, at_end = 0.580020;
-};
-
 /// Unilateral stops of a scalar coordinate, whose stiffness grows with penetration (joints/joint_stop.h).
 struct LimitStop {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double lower, upper;
   double inertia = 0;                                     ///< that the coordinate moves initially [kg or kg m^2]
   double give_below = kInfinity, give_above = kInfinity;  ///< largest possible penetrations, > 0 [m or rad]
-  StopDamping damping = {};
+  /// Damping over the critical damping of the oscillator that stop and coordinate form. The default gives a restitution
+  /// of 0.3 (joints/stop_restitution.h).
+  double damping_ratio = 0.497239;
 };
 
 /// The law by which a coordinate follows another one, u: offset + multiplier f(u).
@@ -225,6 +221,12 @@ inline double armature(const Model& model, const Coordinate& coordinate) {
 /// Whether the coordinate is that of a HeldJoint.
 inline bool is_held(const Model& model, const Coordinate& coordinate) {
   return model.joints.is_held(coordinate.joint);
+}
+
+/// Whether joints have limits.
+inline bool has_stops(const Model& model) {
+  return std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                     [](const Coordinate& coordinate) { return coordinate.limit.has_value(); });
 }
 
 /// Whether the coordinate's unit is rad: it is a component of a free rotation, or a scalar that causes a rotation.

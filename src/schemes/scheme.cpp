@@ -38,6 +38,7 @@ Scheme statics_of(Scheme scheme) {
 }
 
 void take_constants_of_step(Scheme& scheme, const IntegratorDescription& integrator, double step) {
+  scheme.blur = step;
   if (scheme.damping_relaxation > 0) scheme.damping_relaxation = step;
   if (scheme.dissipation.any())
     scheme.dissipation = numerical_dissipation(scheme.order, integrator.rho_infinity.value_or(kDefaultRho), step);

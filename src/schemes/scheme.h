@@ -37,7 +37,8 @@ struct Scheme : TimeRule {
   /// Duration of a contact with a stop [s]. Long enough to be resolved by the scene's steps, short enough to be
   /// invisible.
   double contact_time = kContactSteps * IntegratorDescription().step;
-  bool may_be_planar = true;  ///< steps may be taken in a plane; false: always three-dimensional
+  double blur = IntegratorDescription().step;  ///< of touches, see CoordinateStep::blur [s]
+  bool may_be_planar = true;                   ///< steps may be taken in a plane; false: always three-dimensional
   SchemeOptions options;
 
   int solves_per_step() const { return is_composition ? kCompositionSteps : 1; }
@@ -57,8 +58,9 @@ std::vector<const Scheme*> meanings(std::string_view name);
 /// @throws ModelError naming the option that does not suit the scheme, or an unknown scheme.
 Scheme make_scheme(const IntegratorDescription& integrator);
 
-/// Gives a scheme of `integrator` the constants that follow from this step [s]: those of numerical dissipation and the
-/// relaxation time of dampers. Their effect is of second order in the step (of first, for dissipation of first order).
+/// Gives a scheme of `integrator` the constants that follow from this step [s]: those of numerical dissipation, the
+/// relaxation time of dampers, and the blur of touches. Their effect is of second order in the step (of first, for
+/// dissipation of first order).
 void take_constants_of_step(Scheme& scheme, const IntegratorDescription& integrator, double step);
 
 /// Coefficients of numerical dissipation for a spectral radius rho_infinity in [0, 1] at infinite frequency. `order`: 1

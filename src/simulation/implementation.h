@@ -337,7 +337,8 @@ struct Simulation::Implementation {
   void set_step_of_constants(double step) {
     if (step == step_of_constants) return;
     step_of_constants = step;
-    if (state.strain_memory.empty()) return;  // nothing is damped by these constants
+    const bool blurs_touches = !scheme.is_incremental() && !scheme.tableau && has_stops(model);
+    if (state.strain_memory.empty() && !blurs_touches) return;  // nothing depends on these constants
     Scheme changed = scheme;
     take_constants_of_step(changed, first_integrator, step);
     const double gain =

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "model/model.h"
+
 namespace flexarm::test {
 namespace {
 
@@ -14,25 +16,22 @@ double restitution(double z) {
 }
 
 TEST(StopRestitution, IsThatOfTheClosedForm) {
-  for (const double e : {0.15, 0.3, 0.5, 0.8, 0.95}) EXPECT_NEAR(restitution(damping_for(e).of_means), e, 1e-9) << e;
+  for (const double e : {0.15, 0.3, 0.5, 0.8, 0.95}) EXPECT_NEAR(restitution(stop_damping_ratio(e)), e, 1e-9) << e;
 }
 
-// The default constants are rounded to six digits.
+// The default constant is rounded to six digits.
 TEST(StopRestitution, OfStopsWithoutOneIsThreeTenths) {
-  const StopDamping usual, found = damping_for(0.3);
-  EXPECT_NEAR(found.of_means, usual.of_means, 1e-6);
-  EXPECT_NEAR(found.at_end, usual.at_end, 1e-6);
+  EXPECT_NEAR(stop_damping_ratio(0.3), LimitStop{}.damping_ratio, 1e-6);
 }
 
 TEST(StopRestitution, OfOneTakesNoDamper) {
-  EXPECT_NEAR(damping_for(1).of_means, 0, 1e-8);
-  EXPECT_NEAR(damping_for(1).at_end, 0, 1e-8);
+  EXPECT_NEAR(stop_damping_ratio(1), 0, 1e-8);
 }
 
 TEST(StopRestitution, OfStrongDampers) {
-  const StopDamping found = damping_for(0.05);
-  EXPECT_GT(found.of_means, 1);
-  EXPECT_LT(found.of_means, 5);
+  const double found = stop_damping_ratio(0.05);
+  EXPECT_GT(found, 1);
+  EXPECT_LT(found, 5);
 }
 
 }  // namespace
