@@ -60,8 +60,8 @@ Eigenpairs converged_pairs(const KrylovSpace& space, int count) {
   return {out.values.head(found), out.vectors.leftCols(found)};
 }
 
-/// The largest space of the iteration. Once a space has more than half of the rows, all pairs at once take less time than
-/// this and the larger ones that may follow.
+/// The largest space of the iteration. Once a space has more than half of the rows, all pairs at once take less time
+/// than this and the larger ones that may follow.
 Eigen::Index most_vectors(Eigen::Index rows, int count) {
   if (rows <= kMostRows) return rows / 2;
   return std::min<Eigen::Index>(rows - KrylovSpace::kBlock, 10 * count + 400);

@@ -11,8 +11,8 @@ namespace flexarm {
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Returns left * right, where all products and sums have the digits of a long double (64 bits of mantissa with GCC on
-/// x86). Takes a fifth of the time of Eigen's product of two such matrices: the processor's registers have these digits,
-/// but numbers in memory that have them are slow to load.
+/// x86). Takes a fifth of the time of Eigen's product of two such matrices: the processor's registers have these
+/// digits, but numbers in memory that have them are slow to load.
 inline LongMatrix long_product(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   assert(left.cols() == right.rows());
   const Eigen::MatrixXd rows = left.transpose();  // each row of `left` is contiguous here

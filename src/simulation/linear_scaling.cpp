@@ -101,8 +101,8 @@ std::optional<Shapes> shapes_of(const LinearModel& model) {
   return out;
 }
 
-/// Positions in coordinates that belong to `shapes`: products with the inverse of `shapes`. In these products, large terms
-/// of slow modes cancel. So they are computed with more digits than the matrices have, and none of those is lost.
+/// Positions in coordinates that belong to `shapes`: products with the inverse of `shapes`. In these products, large
+/// terms of slow modes cancel. So they are computed with more digits than the matrices have, and none of those is lost.
 class LongCoordinates {
  public:
   /// `inverse`: that of `shapes`, to the digits of a double.
