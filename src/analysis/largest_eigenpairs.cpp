@@ -60,17 +60,28 @@ Eigenpairs converged_pairs(const KrylovSpace& space, int count) {
   return {out.values.head(found), out.vectors.leftCols(found)};
 }
 
+/// The largest space of the iteration. Once a space has more than half of the rows, all pairs at once take less time
+/// than this and the larger ones that may follow.
+Eigen::Index most_vectors(Eigen::Index rows, int count) {
+  if (rows <= kMostRows) return rows / 2;
+  return std::min<Eigen::Index>(rows - KrylovSpace::kBlock, 10 * count + 400);
+}
+
+Eigen::Index first_vectors(int count) {
+  return 2 * count + 20;
+}
+
 /// Arnoldi's iteration without restarts. The wanted eigenvalues are well separated from the others, so that few steps
 /// find them.
 Eigenpairs arnoldi_pairs(const LinearOperation& operation, int count, Crowded crowded) {
-  const Eigen::Index most = std::min<Eigen::Index>(operation.rows() - KrylovSpace::kBlock, 10 * count + 400);
+  const Eigen::Index most = most_vectors(operation.rows(), count);
   KrylovSpace space(operation, most);
-  for (Eigen::Index size = std::min<Eigen::Index>(2 * count + 20, most);; size = std::min(size + size / 2, most)) {
+  for (Eigen::Index size = std::min(first_vectors(count), most);; size = std::min(size + size / 2, most)) {
     space.grow(size);
     Eigenpairs pairs = converged_pairs(space, count);
     if (pairs.values.size() == count) return pairs;
     if (size < most) continue;
-    if (pairs.values.size() > 0 && crowded == Crowded::LeaveOut) return pairs;
+    if (pairs.values.size() > 0 && crowded == Crowded::LeaveOut && operation.rows() > kMostRows) return pairs;
     throw std::runtime_error("the eigenvalue iteration did not converge");
   }
 }
@@ -91,7 +102,9 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
 
 std::vector<Eigenpair> largest_eigenpairs(const LinearOperation& operation, int count, bool is_small, Crowded crowded) {
   assert(count >= 1);
-  const bool takes_all = is_small || 2 * count + KrylovSpace::kBlock >= operation.rows();
+  const Eigen::Index rows = operation.rows();
+  const bool takes_all = is_small || 2 * count + KrylovSpace::kBlock >= rows ||
+                         (rows <= kMostRows && first_vectors(count) > most_vectors(rows, count));
   const auto [values, vectors] =
       takes_all ? largest(all_pairs(operation), count) : iterated_pairs(operation, count, crowded);
   std::vector<Eigenpair> pairs;

@@ -276,11 +276,13 @@ void print_frequencies(Simulation& simulation) {
   }
   auto [modes, is_equilibrium] = modes_about_equilibrium(simulation, kModes);
   // Free motions and slow decays come first, and say nothing about the beams. There may be as many as coordinates; few
-  // are found faster.
+  // are found faster. A body has six free motions; if there are more and nothing else, the joints are free, too.
   const auto oscillates = [](const Mode& mode) { return mode.frequency > 0 && mode.rate <= 0; };
+  const auto is_free = [](const Mode& mode) { return mode.is_free(); };
   const int most = kModes + 2 * static_cast<int>(simulation.coordinate_names().size());
   for (int count = kModes; count < most && std::count_if(modes.begin(), modes.end(), oscillates) < kModes;) {
-    count = std::min(2 * count, most);
+    const bool are_joints_free = count > 6 && std::all_of(modes.begin(), modes.end(), is_free);
+    count = are_joints_free ? most : std::min(2 * count, most);
     modes = simulation.natural_modes(count);
   }
   fmt::print("\n");
@@ -290,7 +292,7 @@ void print_frequencies(Simulation& simulation) {
   std::sort(oscillating.begin(), oscillating.end(),
             [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
   oscillating.resize(std::min<std::size_t>(oscillating.size(), kModes));
-  const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
+  const auto free = std::count_if(modes.begin(), modes.end(), is_free);
   fmt::print("first natural frequencies there [Hz]:");
   for (const Mode& mode : oscillating) fmt::print(" {:.6g}", mode.frequency);
   if (oscillating.empty()) fmt::print(" none");

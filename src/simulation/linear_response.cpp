@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "math/hessenberg.h"
+#include "math/long_product.h"
 #include "math/matrix_exponential.h"
 #include "math/pi.h"
 #include "simulation/linear_scaling.h"
@@ -18,8 +19,6 @@ using Eigen::MatrixXd;
 
 namespace {
 
-using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-
 /// Two refinements give all digits, unless a pole is very near. One that is not below kContraction times the one before
 /// is round-off.
 constexpr int kMostRefinements = 3;
@@ -30,7 +29,7 @@ constexpr double kContraction = 0.5;
 /// refined in the states of the model itself, by residuals with 64 bits of mantissa.
 class RefinedResponse {
  public:
-  explicit RefinedResponse(const LinearModel& model) : model_(model), long_a_(model.a.cast<long double>()) {
+  explicit RefinedResponse(const LinearModel& model) : model_(model) {
     const ScaledStates scaled = scaled_states(model);
     Hessenberg form = hessenberg(scaled.a);
     reduced_ = std::move(form.reduced);
@@ -59,16 +58,16 @@ class RefinedResponse {
   }
   /// b - (i rate - a) states.
   MatrixXcd residual(double rate, const MatrixXcd& states) const {
-    const LongMatrix real = states.real().cast<long double>(), imaginary = states.imag().cast<long double>();
+    const MatrixXd real = states.real(), imaginary = states.imag();
     const auto w = static_cast<long double>(rate);
     MatrixXcd out(states.rows(), states.cols());
-    out.real() = (model_.b.cast<long double>() + w * imaginary + long_a_ * real).cast<double>();
-    out.imag() = (long_a_ * imaginary - w * real).cast<double>();
+    out.real() = (model_.b.cast<long double>() + w * imaginary.cast<long double>() + long_product(model_.a, real))
+                     .cast<double>();
+    out.imag() = (long_product(model_.a, imaginary) - w * real.cast<long double>()).cast<double>();
     return out;
   }
 
   const LinearModel& model_;
-  LongMatrix long_a_;
   MatrixXd reduced_;           // the Hessenberg form of a, in the states scaled = inverse_ states
   MatrixXcd basis_, inverse_;  // real
 };

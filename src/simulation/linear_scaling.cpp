@@ -13,6 +13,7 @@
 #include "math/dense_eigenpairs.h"
 #include "math/hessenberg.h"
 #include "math/least_squares.h"
+#include "math/long_product.h"
 #include "math/picked.h"
 
 namespace flexarm {
@@ -100,23 +101,40 @@ std::optional<Shapes> shapes_of(const LinearModel& model) {
   return out;
 }
 
-/// States in modal coordinates: position and rate of each mode side by side. In the products, large terms of slow modes
-/// cancel. So these are computed with more digits than the matrices have, and none of the matrices' digits is lost.
+/// Positions in coordinates that belong to `shapes`: products with the inverse of `shapes`. In these products, large
+/// terms of slow modes cancel. So they are computed with more digits than the matrices have, and none of those is lost.
+class LongCoordinates {
+ public:
+  /// `inverse`: that of `shapes`, to the digits of a double.
+  LongCoordinates(const MatrixXd& shapes, const MatrixXd& inverse) : shapes_(shapes), inverse_(inverse) {
+    // One iteration of Newton's method adds digits.
+    const LongMatrix identity = LongMatrix::Identity(shapes.rows(), shapes.cols());
+    correction_ = inverse * (identity - long_product(shapes, inverse)).cast<double>();
+  }
+  MatrixXd inverse() const { return inverse_ + correction_; }
+  /// inverse * columns.
+  MatrixXd of(const LongMatrix& columns) const {
+    const MatrixXd head = columns.cast<double>(), rest = (columns - head.cast<long double>()).cast<double>();
+    const MatrixXd small = inverse_ * rest + correction_ * head;  // correction_ * rest is below the last digit
+    return (long_product(inverse_, head) + small.cast<long double>()).cast<double>();
+  }
+  /// inverse * matrix * shapes.
+  MatrixXd of_map(const MatrixXd& matrix) const { return of(long_product(matrix, shapes_)); }
+
+ private:
+  const MatrixXd &shapes_, &inverse_;
+  MatrixXd correction_;
+};
+
+/// States in modal coordinates: position and rate of each mode side by side.
 ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
-  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Index count = model.positions;
-  const Long shapes = modes.shapes.cast<long double>();
-  // One iteration of Newton's method makes this the inverse of `shapes` with more digits.
-  Long coordinates = modes.coordinates.cast<long double>();
-  coordinates = (coordinates * (2 * Long::Identity(count, count) - shapes * coordinates)).eval();
-  const auto in_modes = [&](const auto& rows) -> MatrixXd {
-    const Long seen = rows.template cast<long double>() * shapes;
-    return (coordinates * seen).template cast<double>();
-  };
-  const auto stiffness = model.a.bottomLeftCorner(count, count);
-  const MatrixXd by_place = in_modes(stiffness), by_rate = in_modes(model.a.bottomRightCorner(count, count));
-  const MatrixXd inverse = coordinates.cast<double>();
-  const MatrixXd inputs = (coordinates * model.b.bottomRows(count).cast<long double>()).cast<double>();
+  const LongCoordinates coordinates(modes.shapes, modes.coordinates);
+  const MatrixXd stiffness = model.a.bottomLeftCorner(count, count);
+  const MatrixXd by_place = coordinates.of_map(stiffness),
+                 by_rate = coordinates.of_map(model.a.bottomRightCorner(count, count));
+  const MatrixXd inverse = coordinates.inverse();
+  const MatrixXd inputs = coordinates.of(model.b.bottomRows(count).cast<long double>());
   ScaledStates out;
   out.a = out.basis = out.inverse = MatrixXd::Zero(2 * count, 2 * count);
   out.b = MatrixXd::Zero(2 * count, model.b.cols());

@@ -57,6 +57,17 @@ TEST(LargestEigenpairs, FindsEqualOnesAsOftenAsTheyCome) {
   }
 }
 
+// A multiple eigenvalue as of the free motions of many joints, which a block of the iteration does not contain.
+TEST(LargestEigenpairs, FindsManyEqualOnes) {
+  constexpr int kEqual = 61, kCount = 150;
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
+  for (int i = 0; i < kRows; ++i) middle(i, i) = i < kEqual ? 1 : std::pow(2 + i - kEqual, -4.0);
+  const std::vector<Eigenpair> pairs = largest_eigenpairs(Reflected(middle), kCount, false, Crowded::Fail);
+  ASSERT_EQ(pairs.size(), static_cast<std::size_t>(kCount));
+  for (int k = 0; k < kCount; ++k)
+    EXPECT_NEAR(pairs[k].value.real(), k < kEqual ? 1 : std::pow(2 + k - kEqual, -4.0), 1e-13) << k;
+}
+
 TEST(LargestEigenpairs, FindsComplexOnes) {
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
   for (int i = 0; i < kRows; i += 2) {
@@ -83,9 +94,9 @@ TEST(LargestEigenpairs, GoesOnWhereTheSpaceIsInvariant) {
 }
 
 // A spectrum like that of overdamped modes: three eigenvalues are well separated. All others are near 1, and their
-// distances are near round-off.
+// distances are near round-off. (Of fewer rows all pairs are computed.)
 TEST(LargestEigenpairs, OfACrowdThoseThatLieApartAreFound) {
-  const int rows = 700;
+  const int rows = 1100;
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(rows, rows);
   for (int i = 0; i < rows; ++i) middle(i, i) = i < 3 ? 5 - i : 1 - 1e-4 * i / rows;
   const Reflected operation(middle);

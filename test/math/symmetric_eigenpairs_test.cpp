@@ -1,9 +1,11 @@
-// Tests eigenvalues and exponentials of matrices whose entries have very different sizes.
+// Tests eigenvalues, exponentials and products of matrices whose entries have very different sizes.
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "math/dense_eigenpairs.h"
+#include "math/long_product.h"
 #include "math/matrix_exponential.h"
 
 namespace flexarm {
@@ -62,6 +64,24 @@ TEST(MatrixExponential, SlowOnesKeepTheirDigitsBesideFastOnes) {
 TEST(MatrixExponential, OfNothing) {
   EXPECT_EQ(matrix_exponential_less_identity(MatrixXd(0, 0)).size(), 0);
   EXPECT_TRUE(matrix_exponential_less_identity(MatrixXd::Zero(2, 2)).isZero(0));
+}
+
+// The first and the last term of each sum cancel. A double has no digit of the one between them.
+TEST(LongProduct, KeepsTheDigitsOfTermsThatCancel) {
+  if (std::numeric_limits<long double>::digits < 64) GTEST_SKIP() << "a long double has the digits of a double here";
+  for (const Eigen::Index columns : {1, 2, 3, 4, 5}) {
+    const MatrixXd left = (MatrixXd(2, 3) << 1, 0x1p-60, -1, 3, 0x1p-58, -3).finished();
+    const MatrixXd right = MatrixXd::Ones(3, 1) * Eigen::RowVectorXd::LinSpaced(columns, 1, double(columns));
+    const LongMatrix product = long_product(left, right), wide = long_product(right.transpose(), left.transpose());
+    ASSERT_EQ(product.rows(), 2);
+    ASSERT_EQ(product.cols(), columns);
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      EXPECT_EQ(product(0, j), 0x1p-60L * (j + 1));
+      EXPECT_EQ(product(1, j), 0x1p-58L * (j + 1));
+    }
+    EXPECT_TRUE(wide == product.transpose());
+  }
+  EXPECT_EQ(long_product(MatrixXd(2, 0), MatrixXd(0, 3)), LongMatrix::Zero(2, 3));
 }
 
 }  // namespace
