@@ -128,7 +128,7 @@ def probe(path):
 
 @functools.lru_cache(maxsize=None)
 def as_they_are():
-    """Return ffmpeg's option for frames that are neither doubled nor dropped: a new one since 5.1, the only one in 9."""
+    """Return ffmpeg's option for frames neither doubled nor dropped: new in 5.1, and the only one in 9."""
     options = subprocess.run(["ffmpeg", "-v", "error", "-h", "long"], check=True, stdout=subprocess.PIPE).stdout
     return "-fps_mode" if b"-fps_mode" in options else "-vsync"
 
