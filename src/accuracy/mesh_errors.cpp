@@ -112,7 +112,7 @@ MeshErrors measure_meshes(TrialRuns& trials, const RunSettings& settings, const 
     const std::optional<int> order = freedom.keeps_orders ? std::optional<int>(settings.beams[b].order) : std::nullopt;
     errors.beams.push_back(freedom.is_free[b]
                                ? measure_beam(trials, run, b, freedom.may_be_rigid, order, wanted)
-                               : std::vector<MeshError>{{rich.beams[b], none, mesh_cost(rich.beams[b])}});
+                               : std::vector<MeshError>(1, {rich.beams[b], none, mesh_cost(rich.beams[b])}));
   }
   return errors;
 }

@@ -9,7 +9,7 @@ namespace {
 
 template <class NodePack>
 void scatter(const NodePack& pack, const ConservingNode<Pack>& node, Balance& balance) {
-  std::array<double*, Pack::kLanes> targets;
+  std::array<double*, Pack::kLanes> targets = {};  // initialised for compilers that warn about unused lanes
   for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.residual.at(pack.nodes[lane]);
   add_lanes<6>(node.residual.data(), pack.lanes, targets.data());
   for (int lane = 0; lane < pack.lanes && balance.tangent; ++lane) {

@@ -112,11 +112,11 @@ std::array<double, kmax + 1> far_series_coefficients(double theta_squared);
 
 }  // namespace detail
 
-/// a_0 .. a_kmax with a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!: a_0 = sin(theta)/theta, a_1 =
-/// (1-cos(theta))/theta^2, a_2 = (theta-sin(theta))/theta^3, ..., to round-off for 0 <= theta^2 <= (2 pi)^2. Below
-/// theta = 2, power series give the two highest, and the others follow by the recurrence a_{k-2} = 1/(k-1)! - theta^2
-/// a_k, which damps errors in this direction. Above, closed forms give a_0 and a_1, and the recurrence is stable in the
-/// other direction. Closed forms in the half angle keep a_1 accurate at 2 pi.
+/// The coefficients a_0 to a_kmax, where a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!. Thus a_0 = sin(theta)/theta,
+/// a_1 = (1-cos(theta))/theta^2 and a_2 = (theta-sin(theta))/theta^3. They are right to round-off for 0 <= theta^2 <=
+/// (2 pi)^2. Below theta = 2, power series give the two highest, and the others follow by the recurrence
+/// `a_{k-2} = 1/(k-1)! - theta^2 a_k`, which damps errors in this direction. Above, closed forms give a_0 and a_1, and
+/// the recurrence is stable in the other direction. Closed forms in the half angle keep a_1 accurate at 2 pi.
 /// @note 1 / theta d(a_k)/d(theta) = (k+1) a_{k+2} - a_{k+1}.
 template <int kmax, typename S>
 [[gnu::always_inline]] inline std::array<S, kmax + 1> series_coefficients(const S& theta_squared) {

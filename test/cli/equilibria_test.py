@@ -368,7 +368,7 @@ class Feet(Scenes):
 
     BALL, GUIDE = 0.03, 0.7
     STIFFNESS = 1e6  # of the rod and of the contact
-    ROD = 2 * np.sqrt(100 / STIFFNESS)  # radius of a round rod with the larger one of the bending stiffnesses
+    ROD = float(2 * np.sqrt(100 / STIFFNESS))  # radius of a round rod with the larger one of the bending stiffnesses
 
     def elastica(self, load):
         """Return the tip's position, and the ball's height."""

@@ -66,8 +66,12 @@ void expect_balance(const std::vector<TendonStep>& ends, const std::vector<doubl
     }
     EXPECT_LE(behind, ratio * before + tolerance) << i;
     EXPECT_LE(before, ratio * behind + tolerance) << i;
-    if (slips[i] > 0) EXPECT_NEAR(behind, ratio * before, tolerance) << i;
-    if (slips[i] < 0) EXPECT_NEAR(before, ratio * behind, tolerance) << i;
+    if (slips[i] > 0) {
+      EXPECT_NEAR(behind, ratio * before, tolerance) << i;
+    }
+    if (slips[i] < 0) {
+      EXPECT_NEAR(before, ratio * behind, tolerance) << i;
+    }
   }
 }
 

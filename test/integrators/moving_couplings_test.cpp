@@ -152,7 +152,9 @@ TEST(MovingCouplingsInARun, AllocateNothing) {
   });
   EXPECT_TRUE(is_good);
   EXPECT_GE(spring->visits(), 4);
-  if (kCountsAllocations) EXPECT_EQ(count, 0);
+  if (kCountsAllocations) {
+    EXPECT_EQ(count, 0);
+  }
 }
 
 }  // namespace

@@ -36,10 +36,24 @@ struct Swing {
   }
 };
 
+StepSettings modified_newton(double tolerance) {
+  StepSettings settings;
+  settings.step = kStep;
+  settings.tolerance = tolerance;
+  return settings;
+}
+
+StepSettings full_newton() {
+  StepSettings settings = modified_newton(1e-10);
+  settings.max_halvings = 5;
+  settings.reuse_factorisation = false;
+  return settings;
+}
+
 /// Compares each step with a step of full Newton from the same state: positions may differ by at most `bound`, relative
 /// to the size of the scene. Returns the number of iterations of all steps.
 int iterations_within(double bound, const std::string& scene, double tolerance, int steps = kSteps) {
-  Swing quick(scene, {kStep, tolerance}), full(scene, {kStep, 1e-10, 20, 5, false});
+  Swing quick(scene, modified_newton(tolerance)), full(scene, full_newton());
   for (int step = 0; step < steps && !::testing::Test::HasFatalFailure(); ++step) {
     full.state = quick.state;
     full.stepper.invalidate();

@@ -4,6 +4,7 @@ The frames are looked at through ffmpeg. See docs/notes/page.md for what a page 
 """
 
 import base64
+import functools
 import json
 import os
 import re
@@ -125,10 +126,17 @@ def probe(path):
             float(found.get("duration", 0)))
 
 
+@functools.lru_cache(maxsize=None)
+def as_they_are():
+    """Return ffmpeg's option for frames neither doubled nor dropped: new in 5.1, and the only one in 9."""
+    options = subprocess.run(["ffmpeg", "-v", "error", "-h", "long"], check=True, stdout=subprocess.PIPE).stdout
+    return "-fps_mode" if b"-fps_mode" in options else "-vsync"
+
+
 def pixels(path, width=WIDTH, height=HEIGHT):
     """Return the frames of a film or picture, as rows of red, green and blue."""
-    data = subprocess.run(["ffmpeg", "-v", "error", "-i", path, "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt",
-                           "rgb24", "-"], check=True, stdout=subprocess.PIPE).stdout
+    data = subprocess.run(["ffmpeg", "-v", "error", "-i", path, as_they_are(), "passthrough", "-f", "rawvideo",
+                           "-pix_fmt", "rgb24", "-"], check=True, stdout=subprocess.PIPE).stdout
     return numpy.frombuffer(data, dtype=numpy.uint8).reshape(-1, height, width, 3).astype(int)
 
 

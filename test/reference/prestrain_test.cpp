@@ -170,7 +170,9 @@ TEST(Prestrain, KeepsTheOrderOfSchemes) {
     const Vector3 coarse = tip_after(scheme, steps), middle = tip_after(scheme, 2 * steps),
                   fine = tip_after(scheme, 4 * steps);
     const double observed = observed_order((coarse - middle).norm(), (middle - fine).norm());
-    if (order == 2) EXPECT_NEAR(observed, order, kOrderTolerance) << scheme;
+    if (order == 2) {
+      EXPECT_NEAR(observed, order, kOrderTolerance) << scheme;
+    }
     // Symmetric steps have errors of even order. With means over the parts of a step, the error of order 4 is smaller
     // than that of order 6 down to round-off.
     if (order == 4) EXPECT_GT(observed, order - kOrderTolerance) << scheme;

@@ -241,7 +241,9 @@ TEST(Start, WarnsOfUndampedAccelerationsAcrossJoints) {
     scene.integrator.gamma = gamma;
     const scene::Diagnostics warnings = Simulation(scene).start_warnings();
     ASSERT_EQ(warnings.size(), gamma == 0.5) << gamma;
-    if (gamma == 0.5) EXPECT_NE(warnings[0].text().find("'newmark' with gamma 0.5"), std::string::npos);
+    if (gamma == 0.5) {
+      EXPECT_NE(warnings[0].text().find("'newmark' with gamma 0.5"), std::string::npos);
+    }
   }
   for (const char* scheme : {"em", "hht2", "m1"}) {
     scene.integrator = {};
