@@ -95,9 +95,8 @@ double effort_limit(const Model& model, const Actuator& actuator) {
 
 /// Whether forces may jump at times that cannot be foreseen, and steps can find these.
 bool may_have_hits(const Model& model) {
-  return has_stops(model) ||
-         std::any_of(model.force_elements.begin(), model.force_elements.end(),
-                     [](const auto& element) { return element->hits(); });
+  return has_stops(model) || std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                                         [](const auto& element) { return element->hits(); });
 }
 
 bool may_have_events(const Simulation& simulation) {

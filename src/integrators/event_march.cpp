@@ -42,8 +42,7 @@ EventMarch::EventMarch(const Model& model, const Scheme& scheme)
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (!model.coordinates[i].limit) continue;
     const StopPenalty penalty = stop_penalty(model.coordinates[i], contact_time_);
-    for (int side = 0; side < 2; ++side)
-      corners_.push_back({false, static_cast<int>(i), side, penalty.damping});
+    for (int side = 0; side < 2; ++side) corners_.push_back({false, static_cast<int>(i), side, penalty.damping});
   }
   const std::vector<FrictionCarrier>& carriers = system_.friction().carriers();
   for (std::size_t c = 0; c < carriers.size(); ++c)

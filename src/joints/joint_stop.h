@@ -22,8 +22,8 @@ struct StopPenalty {
 /// Returns the penalty with which an undamped contact lasts `contact_time` [s], with LimitStop::damping_ratio.
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 
-/// Returns the effort of both stops on the coordinate. With CoordinateStep::blur the damper takes hold over the way that
-/// the coordinate makes in that time, so that the effort does not jump at touch; the impulse is the same.
+/// Returns the effort of both stops on the coordinate. With CoordinateStep::blur the damper takes hold over the way
+/// that the coordinate makes in that time, so that the effort does not jump at touch; the impulse is the same.
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
 /// One side of a stop at an instant: the penetration (< 0 outside), its rate, and the push divided by dx/dp (< 0 if the
 /// stop would have to pull). The law for penetrations > 0 is also used outside, so all of these are smooth at touch.
