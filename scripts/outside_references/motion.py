@@ -6,6 +6,7 @@ Judged times are ends of intervals, so that results contain no interpolation.
 import math
 
 import numpy as np
+from scipy.linalg import null_space
 from scipy.optimize import brentq
 
 try:
@@ -118,7 +119,7 @@ class Motion:
         by_joint = {tag: {m.index[e.get("joint")]: e for e in m.root.findall(tag) if e.get("joint") in m.index}
                     for tag in ("spring", "drive", "servo")}
         efforts = {m.index[e.get("joint")]: e.get("history") for e in m.entries("effort")}
-        mass = m.equations(self.q0, [0.0] * m.n)[1]
+        _, mass, _, rows, _ = m.equations(self.q0, [0.0] * m.n)
         for j, joint in enumerate(m.moving):
             drive = by_joint["drive"].get(j)
             limit = joint.element.find("limit")
@@ -129,7 +130,8 @@ class Motion:
             rigid = motor.inertia if motor is not None and not motor.is_elastic else 0.0
             self.armature[j] = rigid
             if j not in self.motions and j not in self.followers:
-                self._read_passive(j, joint, by_joint["spring"].get(j), motor, mass[j][j] + rigid)
+                inertia = self._loop_inertia(j, mass, rows) if rows else mass[j][j] + rigid
+                self._read_passive(j, joint, by_joint["spring"].get(j), motor, inertia)
         q = self.q0
         self.elements += [PointSpring(m, e, q) for e in m.point_springs] + [Load(m, e) for e in m.entries("load")]
         self.elements += contacts(m, self.step)
@@ -139,6 +141,14 @@ class Motion:
             at += element.extras
         self.y0 = np.concatenate([self.q0[self.free], self.v0[self.free]]
                                  + [np.array(e.start(self.q0, self.v0), dtype=float) for e in self.elements])
+
+    def _loop_inertia(self, j, mass, rows):
+        """The inertia of all that moves with a coordinate of a loop with one freedom, at the start."""
+        way = null_space(np.array(rows).reshape(-1, self.mechanism.n))
+        if way.shape[1] != 1:
+            return math.nan  # no stop may need it
+        way = way[:, 0] / way[j, 0]
+        return way @ (np.array(mass) + np.diag(self.armature)) @ way
 
     def _read_passive(self, j, joint, spring, motor, inertia):
         dynamics, law, limit = (joint.element.find(tag) for tag in ("dynamics", "friction", "limit"))
@@ -157,6 +167,8 @@ class Motion:
         if limit is not None and joint.type in ("revolute", "prismatic", "floating"):
             lower, upper = number(limit, "lower", 0.0), number(limit, "upper", 0.0)
             if upper - lower < 1e8:
+                if math.isnan(inertia):
+                    raise Refused("a stop in loops with several freedoms")
                 self.elements.append(Stop(j, lower, upper, number(limit, "restitution", 0.3), inertia, self.step,
                                           self.q0[j]))
 
