@@ -129,6 +129,7 @@ StepResult::Reason ExplicitStep::attempt_piece(const State& state, double whole,
 
 StepResult::Reason ExplicitStep::advance(State& state, double step, bool reuses) {
   using Reason = StepResult::Reason;
+  if (events_.any() && kept_.nodes.empty()) kept_ = state;  // so that it has memory when it is needed
   const double end = step_end(state.time, step);
   double rest = step;
   for (int pieces = 0; rest > 0; ++pieces) {

@@ -326,6 +326,23 @@ TEST_F(Allocation, NoneWhereStopsAreHitFast) {
   }
 }
 
+// Steps of explicit schemes are cut where stops are touched and left.
+TEST_F(Allocation, NoneInExplicitHits) {
+  for (const char* scheme : {"rk4", "dop853"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    SceneBuilder b;
+    b.body("block", 1, Vector3::Zero(), Matrix3::Identity());
+    b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
+    b.scene.initial_joints.push_back({"rail", 0, 5.0, {}});
+    Simulation simulation(b.scene, options);
+    bool comes_back = false;
+    expect_none_after_the_first_step(
+        simulation, 200, [&](const StepResult&) { comes_back = comes_back || simulation.velocity(0) < -1; });
+    EXPECT_TRUE(comes_back) << scheme;
+  }
+}
+
 // Halved steps use other code than full ones.
 TEST_F(Allocation, NoneWhereBodiesTouchAndLetGo) {
   scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
