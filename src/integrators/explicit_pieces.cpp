@@ -118,7 +118,9 @@ StepResult::Reason ExplicitStep::attempt_piece(const State& state, double whole,
     if (turns == kMostPieces) return attempt_freely(state, rest, length);
     reason = end_at_event(state, whole, length);
     if (reason != Reason::None || length >= kShortest * whole) break;
-    events_.turn(*events_.first());  // the event is where the piece begins
+    const std::optional<std::size_t> event = events_.first();
+    if (!event) break;
+    events_.turn(*event);  // it is where the piece begins
     length = rest;
     reason = attempt(state, rest, false, true);
   }
