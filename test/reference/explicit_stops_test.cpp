@@ -103,7 +103,7 @@ TEST_P(ExplicitStops, LoseWhatTheAccountSays) {
   EXPECT_LT(defects[1], std::max(defects[0] / std::pow(2, GetParam().order - 1), round_off)) << defects[0];
 }
 
-// Each sub-range of the steps begins where the state says, so a run that is restored goes on with the same bits.
+// Each piece of a step begins as the state says, so a run that is restored goes on with the same bits.
 TEST_P(ExplicitStops, GoOnFromAnyState) {
   Simulation whole = without_memory(carriage()), other = without_memory(carriage());
   for (int i = 0; i < 200; ++i) {

@@ -310,16 +310,21 @@ TEST_F(Allocation, NoneWhereElementsMayBeHalved) {
   expect_none_after_the_first_step(simulation, 200, [](const StepResult& result) { EXPECT_TRUE(result.converged); });
 }
 
+/// A block that moves between stops.
+Simulation carriage(const char* scheme, double speed) {
+  SimulationOptions options;
+  options.scheme = scheme;
+  SceneBuilder b;
+  b.body("block", 1, Vector3::Zero(), Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
+  b.scene.initial_joints.push_back({"rail", 0, speed, {}});
+  return Simulation(b.scene, options);
+}
+
 // Hits that need halved steps evaluate the rates at the beginning of the step.
 TEST_F(Allocation, NoneWhereStopsAreHitFast) {
   for (const char* scheme : {"em", "newmark"}) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    SceneBuilder b;
-    b.body("block", 1, Vector3::Zero(), Matrix3::Identity());
-    b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
-    b.scene.initial_joints.push_back({"rail", 0, 100.0, {}});
-    Simulation simulation(b.scene, options);
+    Simulation simulation = carriage(scheme, 100);
     int halvings = 0;
     expect_none_after_the_first_step(simulation, 20, [&](const StepResult& result) { halvings += result.halvings; });
     EXPECT_GT(halvings, 0) << scheme;
@@ -329,13 +334,7 @@ TEST_F(Allocation, NoneWhereStopsAreHitFast) {
 // Steps of explicit schemes are cut where stops are touched and left.
 TEST_F(Allocation, NoneInExplicitHits) {
   for (const char* scheme : {"rk4", "dop853"}) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    SceneBuilder b;
-    b.body("block", 1, Vector3::Zero(), Matrix3::Identity());
-    b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
-    b.scene.initial_joints.push_back({"rail", 0, 5.0, {}});
-    Simulation simulation(b.scene, options);
+    Simulation simulation = carriage(scheme, 5);
     bool comes_back = false;
     expect_none_after_the_first_step(
         simulation, 200, [&](const StepResult&) { comes_back = comes_back || simulation.velocity(0) < -1; });
