@@ -202,6 +202,7 @@ void StepSystem::accept(State& state) {
   actuators_.accept(state);
   beams().accept(state);
   if (interpolation_) interpolation_->accept(state);
+  if (configuration_.led_to()) state.drives.begin_anew(), state.transmitted.begin_anew();
   state.time = configuration_.end_time();
 }
 

@@ -58,9 +58,13 @@ void StepConfiguration::find_begin_rates() {
 }
 
 void StepConfiguration::set_prescribed(double time) {
-  for (const Coordinate& coordinate : model_.coordinates)
-    if (coordinate.motion >= 0)
-      released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
+  for (std::size_t c = 0; c < model_.coordinates.size(); ++c) {
+    const Coordinate& coordinate = model_.coordinates[c];
+    if (coordinate.motion < 0) continue;
+    const bool is_led = led_to_ && !std::isnan((*led_to_)[c]);
+    released_[coordinate.joint].displacement[coordinate.component] =
+        is_led ? (*led_to_)[c] : model_.histories[coordinate.motion](time);
+  }
 }
 
 /// Guesses that velocities of nodes stay constant. Joint coordinates are guessed to stay where they are.

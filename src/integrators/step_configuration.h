@@ -34,8 +34,12 @@ class StepConfiguration {
   void begin(const State& state, double step);
   /// Moves the trial end by extrapolated increments of that order, see IncrementHistory.
   void extrapolate(const IncrementHistory& history, int order);
-  /// Sets prescribed coordinates to their values at `time` [s].
+  /// Sets prescribed coordinates to their values at `time` [s], unless lead() has set others.
   void set_prescribed(double time);
+  /// Leads prescribed coordinates in the next steps to these places, per coordinate; NaN: to that of the function.
+  /// Null: all follow their functions again. `places` must outlive the steps.
+  void lead(const std::vector<double>* places) { led_to_ = places; }
+  const std::vector<double>* led_to() const { return led_to_; }
   /// Applies a Newton update, with one entry per unknown, to joint coordinates and to nodes that are not slaves.
   void update(const Eigen::VectorXd& increment);
   /// Sets mimic coordinates, slaves and increments. To be called after all other changes of the trial end.
@@ -135,6 +139,7 @@ class StepConfiguration {
   int off_line_joint_ = -1;
   bool keeps_begin_rates_ = false;
   const EventModes* modes_ = nullptr;
+  const std::vector<double>* led_to_ = nullptr;
   std::vector<Vector6> begin_velocities_;  // per node, spatial
   std::vector<ReleasedVector> begin_rates_;
 };

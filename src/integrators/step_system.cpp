@@ -39,6 +39,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
 }
 
 void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
+  configuration_.lead(other.configuration_.led_to());
   invalidate();
   start(state, other.configuration().step());
   friction_.stick_as(other.friction_);

@@ -57,6 +57,8 @@ class StepSystem {
   /// Prescribes the branches of stops and dry friction from the next step on. Null: each step finds them. `modes` must
   /// outlive the steps.
   void hold_modes(const EventModes* modes) { configuration_.hold_modes(modes); }
+  /// See StepConfiguration::lead().
+  void lead(const std::vector<double>* places) { configuration_.lead(places); }
   const DryFrictionStep& friction() const { return friction_; }
   /// Sets the history of `end` as if one step of that length had led there from `begin`. Keeps its newest multipliers.
   void remember_step(const State& begin, double step, State& end);

@@ -6,6 +6,7 @@
 
 #include "flexarm/model/results.h"
 #include "integrators/deadline.h"
+#include "integrators/motion_kinks.h"
 #include "integrators/newton.h"
 #include "integrators/step_follower.h"
 #include "integrators/step_settings.h"
@@ -58,14 +59,17 @@ class Stepper {
 
  private:
   StepResult advance_by_scheme(State& state, const Deadline& deadline);
-  /// Does sub-steps until the step is done, it fails, or a slider leaves. Returns false if it fails.
-  bool do_sub_steps(State& state, const Deadline& deadline, StepResult& result);
+  /// Does sub-steps of this time until it is over, one fails, or a slider leaves. Returns false after a failure.
+  bool do_sub_steps(State& state, double duration, const Deadline& deadline, StepResult& result);
   /// Completes the result of a failed step with the place and the reason.
   StepResult give_up(bool is_late, StepResult result);
   StepResult initialise_accelerations(State& state);
   /// Does one sub-step. A composed scheme does several simple steps. After a failure the state is unchanged.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);
+  /// If rates of prescribed motions jump here, does the first, very short sub-steps (MotionKinks). Returns their length
+  /// [s].
+  double follow_kinks(State& state, StepResult& result);
   bool explicit_step(State& state, double step, StepResult& result);
   /// Returns the reason why a solution must not be accepted. Records the largest rotation and the time of an event.
   StepResult::Reason flaw_of_solution(const State& state, double step, StepResult& result);
@@ -80,6 +84,7 @@ class Stepper {
   StepSettings settings_;
   StepSystem system_;
   NewtonIteration newton_;
+  MotionKinks kinks_;
   bool may_release_;                                   // whether there are sliders that may leave their lines
   std::unique_ptr<DissipativeSubstitute> substitute_;  // null unless OnFailure::Dissipate
   std::unique_ptr<ExplicitStep> explicit_;             // null unless the scheme is explicit

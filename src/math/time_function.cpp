@@ -314,6 +314,19 @@ double TimeFunction::mean_within(double limit, double begin, double end) const {
   return mean_of_what_may_be_smooth([&](double t) { return cut(expression(t)); }, begin, end, false);
 }
 
+bool TimeFunction::may_have_corners() const {
+  const Function& function = implementation_->function;
+  if (const Table* table = std::get_if<Table>(&function)) {
+    for (std::size_t i = 0; i < table->times.size(); ++i)
+      if (bends(*table, i)) return true;
+    return false;
+  }
+  if (const CubicSpline* spline = std::get_if<CubicSpline>(&function))
+    return spline->rates.front() != 0 || spline->rates.back() != 0;
+  const Expression* expression = std::get_if<Expression>(&function);
+  return expression && expression->has_branches();
+}
+
 std::vector<double> TimeFunction::corners(double begin, double end) const {
   require_times(begin, end);
   const Function& function = implementation_->function;

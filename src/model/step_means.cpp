@@ -15,6 +15,11 @@ void StepMeans::begin() {
   std::fill(impulse.begin(), impulse.end(), 0.0);
 }
 
+void StepMeans::begin_anew() {
+  begin();
+  count = 0;
+}
+
 void StepMeans::end(double duration) {
   assert(duration != 0 && means[0].size() == impulse.size());
   std::rotate(means.begin(), means.end() - 1, means.end());

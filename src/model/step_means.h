@@ -22,6 +22,8 @@ struct StepMeans {
   void begin();
   /// Call this when the whole step has ended. `duration`: its length [s].
   void end(double duration);
+  /// Forgets all means, and the impulse of the current step so far: the forces jump, or have struck.
+  void begin_anew();
   /// Forgets all means; `forces` are the forces at this instant [N or N m].
   void restart(const std::vector<double>& forces);
   /// Returns a force at the end of the last step [N or N m]. It is accurate to second order from the third step on.

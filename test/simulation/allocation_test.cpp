@@ -421,6 +421,19 @@ TEST_F(Allocation, NoneWhereWrenchesBeginAndEnd) {
             0);
 }
 
+// What a motion carries is struck where its rate jumps.
+TEST_F(Allocation, NoneAtKinksOfMotions) {
+  SceneBuilder b;
+  b.body("cart", 1, {0, 0, 0}, Matrix3::Identity());
+  b.body("block", 1, {0, 0, 0}, Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "cart");
+  b.joint("bed", scene::JointKind::Prismatic, "cart", "block");
+  b.scene.motions.push_back({"rail", TimeFunction::parse("0:0 0.1:0 0.2:0.06 0.3:0 0.4:0.1"), {}});
+  Simulation simulation(b.scene);
+  expect_none_after_the_first_step(simulation, 350, [](const StepResult& result) { EXPECT_TRUE(result.converged); });
+  EXPECT_GT(simulation.energies().work, 0.4);
+}
+
 TEST_F(Allocation, NoneInSensitivitiesOfTheStart) {
   SceneBuilder b;
   b.beam("upper", {{1, 0, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 2, 2);

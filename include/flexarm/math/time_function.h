@@ -50,6 +50,8 @@ class TimeFunction {
   /// As mean(), for the function clamped to [-limit, limit] at each instant.
   /// @throws std::invalid_argument as mean(), and if the limit is not > 0.
   double mean_within(double limit, double begin, double end) const;
+  /// Whether the function or its derivative may jump anywhere, as far as its text shows it.
+  bool may_have_corners() const;
   /// Increasing times within (begin, end), exact to round-off, at which the function or its derivative jumps; at most
   /// 10,000. For an expression these are the jumps of its abs, sign, rint, min, max and comparisons. Other jumps are
   /// found if they are more than 1e-4 of the interval apart. Use this before a run, since it evaluates an expression
