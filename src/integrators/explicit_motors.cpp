@@ -21,7 +21,7 @@ bool ExplicitMotors::Input::operator==(const Input& other) const {
          held == other.held && law == other.law && off == other.off;
 }
 
-ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tableau)
+ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tableau, ExplicitMargins& margins)
     : model_(model),
       derivatives_(tableau),
       samples_(model.actuators.size()),
@@ -29,16 +29,16 @@ ExplicitMotors::ExplicitMotors(const Model& model, const ExplicitTableau& tablea
       held_(model.actuators.size(), 0.0),
       first_(model.actuators.size(), 0.0),
       inputs_(model.actuators.size()),
-      kept_inputs_(model.actuators.size()) {
+      kept_inputs_(model.actuators.size()),
+      margins_(margins) {
   varies_.reserve(model.histories.size());
-  margin_places_.reserve(model.actuators.size());
+  limits_.reserve(model.actuators.size());
   for (const TimeFunction& history : model.histories) varies_.push_back(!history.constant());
   for (std::size_t i = 0; i < sampled_.size(); ++i)
     if (model.actuators[i].servo) sampled_[i].outputs.resize(outputs_of(*model.actuators[i].servo));
   for (const Actuator& actuator : model.actuators) {
     const bool is_limited = std::isfinite(std::min(servo_limit(model, actuator), actuator.drive.effort_limit));
-    margin_places_.push_back(is_limited ? static_cast<int>(margins_.size()) : -1);
-    if (is_limited) margins_.resize(margins_.size() + 2);
+    limits_.push_back(is_limited ? margins_.add() : ExplicitMargins::kNone);
   }
 }
 
@@ -103,10 +103,7 @@ void ExplicitMotors::set_instant(const State& state, std::size_t stage, double p
 // ---------------------------------------------------------------- efforts
 
 double ExplicitMotors::cut(std::size_t actuator, const MotorRange& range, double demand) {
-  if (const int place = margin_places_[actuator]; place >= 0) {
-    margins_[place] = range.highest - demand;
-    margins_[place + 1] = demand - range.lowest;
-  }
+  margins_.set(limits_[actuator], demand, range.lowest, range.highest);
   return std::clamp(demand, range.lowest, range.highest);
 }
 

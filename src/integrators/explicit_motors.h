@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "integrators/explicit_margins.h"
 #include "integrators/explicit_rotors.h"
 #include "integrators/stage_derivatives.h"
 #include "joints/motor_step.h"
@@ -16,7 +17,8 @@ namespace flexarm {
 /// no memory after construction.
 class ExplicitMotors {
  public:
-  ExplicitMotors(const Model& model, const ExplicitTableau& tableau);
+  /// Sets the margins of motors with limits in `margins`, which must outlive this object.
+  ExplicitMotors(const Model& model, const ExplicitTableau& tableau, ExplicitMargins& margins);
 
   /// Begins a step: samples set points, and takes the samples of sampled servos that are due.
   void begin(const State& state, double step);
@@ -32,9 +34,6 @@ class ExplicitMotors {
   /// integral.
   double effort(std::size_t actuator, const State& state, double other, const ExplicitRotors::Motion& rotor,
                 const ExplicitRotors::Motion& link, double integral, double& integral_rate);
-  /// How far the efforts of motors with limits were below the highest one, and above the lowest one, when effort() was
-  /// called last [N m or N].
-  const std::vector<double>& margins() const { return margins_; }
   /// The impulse of the motor by what jumps of the set point, times the gain of the derivative: at the beginning
   /// of the step, or in it after that. It is zero if the motor has a limit. `weights`: of the stages. [N m s or N s]
   double first_impulse(std::size_t actuator, const State& state) const;
@@ -70,8 +69,8 @@ class ExplicitMotors {
   std::vector<double> held_;                        // mean output of sampled servos over the step
   std::vector<double> first_;                       // set points at the beginning, after a jump there
   std::vector<Input> inputs_, kept_inputs_;
-  std::vector<int> margin_places_;  // among the margins; -1: the motor has no limit
-  std::vector<double> margins_;
+  std::vector<int> limits_;  // places among the margins
+  ExplicitMargins& margins_;
 };
 
 }  // namespace flexarm

@@ -44,7 +44,7 @@ StepResult::Reason ExplicitStep::attempt(const State& state, double step, bool g
     changes_[0] = last_change_;
   else if (!evaluate(state, 0, begin_, changes_[0]))
     return Reason::DeadPoint;
-  if (!keeps_contacts) events_.begin_kinks(margins());
+  if (!keeps_contacts) events_.begin_kinks(margins_.numbers());
   for (std::size_t s = 1; s <= stages; ++s) {
     const std::vector<double>& weights = s < stages ? tableau_.stages[s] : tableau_.weights;
     stage_ = begin_;
@@ -63,7 +63,7 @@ StepResult::Reason ExplicitStep::attempt(const State& state, double step, bool g
   gained_work_ = stage_[work_], lost_ = stage_[work_ + 1];
   if (!evaluate(state, stages, stage_, last_change_)) return Reason::DeadPoint;
   if (dependent_.any() && dependent_.largest_opening(bodies_) > kOpenLoop) return Reason::OpenLoop;
-  if (events_.any()) events_.look(motion_of(stage_), margins());
+  if (events_.any()) events_.look(motion_of(stage_), margins_.numbers());
   return Reason::None;
 }
 
