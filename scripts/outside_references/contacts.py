@@ -12,7 +12,7 @@ from elements import Element
 from mechanism import Refused, number, numbers
 
 DEPTH = 0.1  # relative to the smaller half width of both sides
-STEPS = 10  # that a hit lasts, if no stiffness is given
+CONTACT_TIME = 0.01  # that a hit lasts, if the scene says nothing else [s]
 SLOW = 1e-3  # rates below this part of half of the frequency times the penetration are those of a contact at rest
 
 
@@ -65,11 +65,11 @@ class Contact(Element):
     """One point of a body against a ground or a ball. `mode`: open, rising (v is the rate), held (v is constant, and
     approaches), receding, resting (v is so small that the law does not depend on it)."""
 
-    def __init__(self, mechanism, element, body, other, point, step):
+    def __init__(self, mechanism, element, body, other, point, contact_time):
         self.mechanism, self.body, self.other = mechanism, body, other
         self.at, self.radius, self.count = point
         mass = 1 / (1 / body.mass + 1 / other.mass)
-        usual = mass * (math.pi / (STEPS * step)) ** 2 / body.at_a_time
+        usual = mass * (math.pi / number(element, "contact_time", contact_time)) ** 2 / body.at_a_time
         self.stiffness = number(element, "stiffness", usual)
         self.frequency = math.sqrt(self.stiffness * body.at_a_time / mass)
         self.depth = DEPTH * min(body.size, other.size)
@@ -196,7 +196,7 @@ class Contact(Element):
             self.mode, self.speed = "held", rate
 
 
-def contacts(mechanism, step):
+def contacts(mechanism, contact_time):
     """All contacts of a scene."""
     root, found = mechanism.root, []
     sides = {e.get("name"): Ground(e, mechanism.plane) for e in root.findall("ground")}
@@ -210,5 +210,5 @@ def contacts(mechanism, step):
         body, other = (sides[element.get(key)] for key in ("first", "second"))
         if isinstance(other, Body) and (other.at_a_time > 1 or body.at_a_time > 1):
             raise Refused("boxes that touch other bodies")
-        found += [Contact(mechanism, element, body, other, point, step) for point in body.points]
+        found += [Contact(mechanism, element, body, other, point, contact_time) for point in body.points]
     return found

@@ -75,13 +75,13 @@ def restitution_of(ratio):
 class Stop(Element):
     """Both stops of a coordinate (notes/stops.md 2). The switches are penetration and force of each stop."""
 
-    def __init__(self, j, lower, upper, restitution, inertia, step, start):
+    def __init__(self, j, lower, upper, restitution, inertia, contact_time, start):
         self.j, self.bounds = j, ((1, upper), (-1, lower))
         depth = 0.1 * (upper - lower)
         if not depth > 0:
             raise Refused("a range of nothing")
         self.depth = max(depth, 4 * (lower - start), 4 * (start - upper))
-        frequency = math.pi / (10 * step)
+        frequency = math.pi / contact_time
         self.stiffness = inertia * frequency ** 2
         low, high = 0.0, 10.0
         for _ in range(60):

@@ -15,7 +15,7 @@ except ImportError:  # before scipy 1.4: of order 5 instead of 8, so with more s
     from scipy.integrate import RK45 as RungeKutta
 
 import time_functions
-from contacts import contacts
+from contacts import CONTACT_TIME, contacts
 from elements import Coulomb, Load, Motor, Passive, PointSpring, Stop
 from mechanism import Mechanism, Refused, number, numbers
 
@@ -51,6 +51,7 @@ class Motion:
     def __init__(self, text, until):
         self.mechanism = m = Mechanism(text)
         self.until, self.step = until, 1e-3
+        self.contact_time = number(m.simulation, "contact_time", CONTACT_TIME)
         integrator = m.simulation.find("integrator")
         if integrator is not None:
             self.step = number(integrator, "step", self.step)
@@ -134,7 +135,7 @@ class Motion:
                 self._read_passive(j, joint, by_joint["spring"].get(j), motor, inertia)
         q = self.q0
         self.elements += [PointSpring(m, e, q) for e in m.point_springs] + [Load(m, e) for e in m.entries("load")]
-        self.elements += contacts(m, self.step)
+        self.elements += contacts(m, self.contact_time)
         self.slices, at = {}, 2 * len(self.free)
         for element in self.elements:
             self.slices[element] = slice(at, at + element.extras)
@@ -169,7 +170,10 @@ class Motion:
             if upper - lower < 1e8:
                 if math.isnan(inertia):
                     raise Refused("a stop in loops with several freedoms")
-                self.elements.append(Stop(j, lower, upper, number(limit, "restitution", 0.3), inertia, self.step,
+                time = number(limit, "contact_time", self.contact_time)
+                if limit.get("stiffness") is not None:
+                    time = math.pi * math.sqrt(inertia / number(limit, "stiffness"))
+                self.elements.append(Stop(j, lower, upper, number(limit, "restitution", 0.3), inertia, time,
                                           self.q0[j]))
 
     def _pressed(self, joint, law):

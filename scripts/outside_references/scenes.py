@@ -356,8 +356,8 @@ def thrown(name, vx=0.0, vy=0.0, turn=0.0):
 
 
 def contacts(rng):
-    """Hits of balls and boxes, of free bodies and of mechanisms. Stiffnesses are declared, except where steps are
-    named."""
+    """Hits of balls and boxes, of free bodies and of mechanisms. Stiffnesses are declared, except where a contact time
+    is named."""
     r = rng.uniform
 
     def stiffness(mass):
@@ -370,7 +370,7 @@ def contacts(rng):
             ground() + ball("b", radius, mass) + free("b", 0.0, radius + r(0.2, 0.8))
             + contact("b", "floor", restitution, stiffness(mass)), thrown("b", r(-0.5, 0.5), r(-1, 0.5)) + probe("b"))
     for restitution in (0.5, 0.8):
-        yield f"ball of ten steps, restitution {restitution}", 1.0, scene(
+        yield f"ball of 10 ms, restitution {restitution}", 1.0, scene(
             ground() + ball("b", 0.06, 0.4) + free("b", 0.0, r(0.3, 0.6)) + contact("b", "floor", restitution),
             probe("b"))
     for i in range(5):

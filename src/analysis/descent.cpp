@@ -308,11 +308,11 @@ bool Descent::judge(const State& equilibrium, JointHold& hold) {
   return true;
 }
 
-JointHold joint_hold(const Model& model, double contact_time, const State& equilibrium) {
+JointHold joint_hold(const Model& model, const State& equilibrium) {
   JointHold hold;
   if (!JointPotentials::exist(model, equilibrium)) return hold;
   const StepSettings settings;
-  Descent(model, exact_equilibrium(contact_time), settings).judge(equilibrium, hold);
+  Descent(model, exact_equilibrium(), settings).judge(equilibrium, hold);
   return hold;
 }
 

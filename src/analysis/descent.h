@@ -20,8 +20,8 @@ struct JointHold {
   bool is_firm() const;
 };
 
-/// How joints are held in an equilibrium. Empty if loads have no potential. `contact_time`: of stops [s].
-JointHold joint_hold(const Model& model, double contact_time, const State& equilibrium);
+/// How joints are held in an equilibrium. Empty if loads have no potential.
+JointHold joint_hold(const Model& model, const State& equilibrium);
 
 /// Descends the potential in the joint coordinates. Steps are within a trust region, in the motions that diagonalise
 /// the curvature (More and Sorensen 1983): Newton's steps where the curvature is positive, and steps along negative

@@ -36,8 +36,8 @@ Model without_prestrains(Model model) {
 /// The mechanism without loads, which is moved step by step.
 class Unloaded {
  public:
-  Unloaded(const Model& model, const State& start, double contact_time)
-      : model_(model), scheme_(exact_equilibrium(contact_time)), system_(model, scheme_), state_(start) {}
+  Unloaded(const Model& model, const State& start)
+      : model_(model), scheme_(exact_equilibrium()), system_(model, scheme_), state_(start) {}
 
   const State& state() const { return state_; }
   double strain_energy() const { return energies(model_, scheme_, state_).strain; }
@@ -107,9 +107,8 @@ std::string most_strained_link(const Model& model, const State& state) {
 }
 
 /// See link_at_dead_point(); for one general motion.
-std::string link_strained_in_second_order(const Model& model, const State& start, double contact_time,
-                                          const Eigen::VectorXd& general) {
-  Unloaded mechanism(model, start, contact_time);
+std::string link_strained_in_second_order(const Model& model, const State& start, const Eigen::VectorXd& general) {
+  Unloaded mechanism(model, start);
   const double stiffness = typical_stiffness(model, start), before = mechanism.strain_energy();
   const double drag = kLittleDrag * stiffness;
   mechanism.forces(drag);
@@ -131,13 +130,13 @@ std::string link_strained_in_second_order(const Model& model, const State& start
 
 }  // namespace
 
-std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
+std::string link_at_dead_point(const Model& model, const State& start) {
   if (model.stiffness_point_count == 0) return "";
   const Model unstressed = without_prestrains(model);
   const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
   for (int k = 0; k < kMotions; ++k) {
     const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);
-    std::string link = link_strained_in_second_order(unstressed, start, contact_time, general);
+    std::string link = link_strained_in_second_order(unstressed, start, general);
     if (!link.empty()) return link;
   }
   return "";

@@ -72,9 +72,9 @@ void JointPotentials::add_bounds(std::size_t axis, std::size_t index) {
   const Coordinate& coordinate = model_.coordinates[index];
   const bool follows = coordinate.mimicked >= 0;
   const double multiplier = follows ? coordinate.mimic.multiplier : 1, offset = follows ? coordinate.mimic.offset : 0;
-  stopped_.push_back({axis, index, multiplier, stop_penalty(coordinate, scheme_.contact_time)});
+  stopped_.push_back({axis, index, multiplier});
   const LimitStop& limit = *coordinate.limit;
-  const double stiffness = stopped_.back().penalty.stiffness * multiplier * multiplier;
+  const double stiffness = limit.stiffness * multiplier * multiplier;
   const double size = std::abs(multiplier), sign = multiplier > 0 ? 1 : -1;
   if (std::isfinite(limit.lower))
     bounds_.push_back({axis, (limit.lower - offset) / multiplier, -sign, stiffness, limit.give_below / size});
@@ -89,12 +89,12 @@ void JointPotentials::add_stops(JointPotential& at) const {
     const Coordinate& coordinate = model_.coordinates[stopped.coordinate];
     CoordinateStep there;
     there.begin = there.end = at.state.released[coordinate.joint].displacement[coordinate.component];
-    const PassiveEffort effort = stop_effort(*coordinate.limit, stopped.penalty, there);
+    const PassiveEffort effort = stop_effort(*coordinate.limit, there);
     const double way = stopped.multiplier / axes_[stopped.axis].scale;
     const auto i = static_cast<Eigen::Index>(stopped.axis);
     at.stop_force[i] -= effort.effort * way;
     at.stop_curvature[i] -= effort.slope * way * way;
-    at.stop_energy += stop_energy(*coordinate.limit, stopped.penalty, there.end);
+    at.stop_energy += stop_energy(*coordinate.limit, there.end);
   }
 }
 
@@ -302,7 +302,7 @@ Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen
                                            const Eigen::MatrixXd& motions) const {
   Eigen::VectorXd round_off(motions.cols());
   std::optional<LinearisedMotion> beams;
-  if (!is_rigid() && motions.cols() > 0) beams.emplace(model_, at.state, scheme_.contact_time);
+  if (!is_rigid() && motions.cols() > 0) beams.emplace(model_, at.state);
   for (Eigen::Index m = 0; m < motions.cols(); ++m) {
     const Eigen::VectorXd motion = motions.col(m);
     round_off[m] = round_off_of_loads(motion);

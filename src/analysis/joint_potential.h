@@ -116,7 +116,6 @@ class JointPotentials {
   struct Stopped {
     std::size_t axis, coordinate;
     double multiplier;  // of the axis
-    StopPenalty penalty;
   };
   std::vector<Stopped> stopped_;
   std::vector<Bound> bounds_;     // of these

@@ -80,7 +80,6 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
       undamped_(model_.beams),
       state_(state),
       wrenches_(state.wrenches),
-      contact_time_(scheme.contact_time),
       is_driven_(driven(model)),
       system_(model_, resting(scheme), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
@@ -273,7 +272,7 @@ ActuatorRates LinearDynamics::actuator_rates(const Eigen::VectorXd& rows) const 
 void LinearDynamics::assemble() {
   const CoordinateRates rows = {row_maps_ * columns_.first,
                                 motion_.value * rates_.second + motion_.first * rates_.first};
-  NodalDynamics own = nodal_dynamics(model_, dof_, state_, contact_time_, rows);
+  NodalDynamics own = nodal_dynamics(model_, dof_, state_, rows);
   const std::vector<ActuatorTerms> motors = actuator_terms(model_, state_);
   const std::vector<double> dampers = efforts_of_gear_dampers(model_, state_, actuator_rates(rows.first));
   const auto scalar_of = [&](std::size_t actuator) {

@@ -85,7 +85,6 @@ class LinearDynamics {
   BeamGroups undamped_;
   State state_;
   std::vector<NodalLoad> wrenches_;
-  double contact_time_;
   std::vector<bool> is_driven_;  // per coordinate
   StepSystem system_;
   const DegreesOfFreedom& dof_;

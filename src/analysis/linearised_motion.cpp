@@ -15,24 +15,21 @@ namespace flexarm {
 namespace {
 
 /// Slope of a coordinate's effort against its rate, at rest.
-double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const Released& released) {
+double damping_of(const Coordinate& coordinate, const Released& released) {
   if (!coordinate.limit) return coordinate.damping;
-  return coordinate.damping + stop_damping(*coordinate.limit, stop, released.displacement[coordinate.component]);
+  return coordinate.damping + stop_damping(*coordinate.limit, released.displacement[coordinate.component]);
 }
 
 }  // namespace
 
-Scheme exact_equilibrium(double contact_time) {
-  Scheme scheme = statics_of(*find_scheme("newmark"));
-  scheme.contact_time = contact_time;
-  return scheme;
+Scheme exact_equilibrium() {
+  return statics_of(*find_scheme("newmark"));
 }
 
-LinearisedMotion::LinearisedMotion(const Model& model, const State& state, double contact_time)
+LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
     : model_(model),
       state_(state),
-      contact_time_(contact_time),
-      system_(model, exact_equilibrium(contact_time), BackendChoice::Matrix),
+      system_(model, exact_equilibrium(), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(system_.tangent().matrix()),
       damping_(model, dof_),
@@ -158,7 +155,7 @@ void LinearisedMotion::assemble_damping() {
   }
   for (const Coordinate& coordinate : model_.coordinates)
     diagonal(damping_, coordinate.joint, coordinate.component) +=
-        damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
+        damping_of(coordinate, state_.released[coordinate.joint]);
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
   const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);

@@ -31,17 +31,17 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
 /// Whether some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may
 /// gain energy.
 bool is_circulatory(const Model& model, const State& equilibrium);
-/// The static rule with exact forces and local interpolation. `contact_time`: of stops (Scheme::contact_time) [s].
-Scheme exact_equilibrium(double contact_time);
+/// The static rule with exact forces and local interpolation.
+Scheme exact_equilibrium();
 
 class LinearisedMotion {
  public:
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
   /// Linearises about the configuration of `state`, under the loads at time 0. Parts that nothing carries fall along
-  /// (see Fall). `model` must outlive this object. `contact_time`: see exact_equilibrium().
+  /// (see Fall). `model` must outlive this object.
   /// @throws std::runtime_error if the stiffness is not finite.
-  LinearisedMotion(const Model& model, const State& state, double contact_time);
+  LinearisedMotion(const Model& model, const State& state);
 
   /// Number of unknowns: those of a step, then the rotors behind elastic gears.
   int unknowns() const { return has_rotors() ? static_cast<int>(matrices_.column_starts.size()) - 1 : dof_.unknowns; }
@@ -90,7 +90,6 @@ class LinearisedMotion {
 
   const Model& model_;
   State state_;  // with the inertia of what falls among its wrenches
-  const double contact_time_;
   StepSystem system_;
   const DegreesOfFreedom& dof_;
   const SparseTangent& stiffness_;

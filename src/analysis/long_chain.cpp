@@ -51,9 +51,9 @@ Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
 
 }  // namespace
 
-UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium) {
+UnstableMotion falling_motion(const Model& model, const State& equilibrium) {
   assert(model.closures.empty());
-  StepSystem system(model, exact_equilibrium(scheme.contact_time));
+  StepSystem system(model, exact_equilibrium());
   const double neutral = neutral_curvature(model, equilibrium);
   system.begin_equilibrium(equilibrium, 1.0, neutral);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");

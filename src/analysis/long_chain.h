@@ -9,6 +9,6 @@ namespace flexarm {
 /// K^-1, with the elimination along the tree for K. Whatever it finds is such a motion. But among many other motions,
 /// it may miss one that falls steeply. Only for models without loop constraints.
 /// @throws std::runtime_error if the stiffness is not finite.
-UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium);
+UnstableMotion falling_motion(const Model& model, const State& equilibrium);
 
 }  // namespace flexarm

@@ -132,9 +132,8 @@ Eigen::MatrixXd basis_of(const LinearisedMotion& system, const std::vector<Eigen
 
 }  // namespace
 
-std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
-  assert(contact_time > 0);
-  const LinearisedMotion system(model, state, contact_time);
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count) {
+  const LinearisedMotion system(model, state);
   // Compute more modes than requested, so that the scale is that of elastic modes even if there are free motions.
   const int computed = std::min(count + kExtraModes, system.freedoms());
   if (count <= 0 || computed <= 0) return {};

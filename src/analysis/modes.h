@@ -17,9 +17,7 @@ namespace flexarm {
 ///
 /// Without damping, each motion gives one mode; for a divergence, it is the growing one of two. With damping, a motion
 /// that does not oscillate gives two modes.
-/// `contact_time`: of touched stops [s].
 /// @throws std::runtime_error if the problem cannot be solved.
-std::vector<Mode> natural_modes(const Model& model, const State& state, int count,
-                                double contact_time = Scheme().contact_time);
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count);
 
 }  // namespace flexarm

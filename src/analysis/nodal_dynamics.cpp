@@ -42,14 +42,13 @@ void add_beams(const Model& model, const DegreesOfFreedom& dof, Triplets& mass, 
   });
 }
 
-void add_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
-                     Triplets& mass, Triplets& damping) {
+void add_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state, Triplets& mass,
+                     Triplets& damping) {
   for (const Coordinate& coordinate : model.coordinates) {
     const int scalar = dof.scalar_of(coordinate);
     double slope = coordinate.damping;
     if (coordinate.limit)
-      slope += stop_damping(*coordinate.limit, stop_penalty(coordinate, contact_time),
-                            state.released[coordinate.joint].displacement[coordinate.component]);
+      slope += stop_damping(*coordinate.limit, state.released[coordinate.joint].displacement[coordinate.component]);
     damping.emplace_back(scalar, scalar, slope);
   }
   for (const ActuatorTerms& terms : actuator_terms(model, state)) {
@@ -61,14 +60,14 @@ void add_coordinates(const Model& model, const DegreesOfFreedom& dof, const Stat
 
 }  // namespace
 
-NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
+NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state,
                              const CoordinateRates& rates) {
   const Eigen::Index size = rates.first.size();
   Triplets mass, damping, turning;
   NodalDynamics out;
   out.force = Eigen::VectorXd::Zero(size);
   add_beams(model, dof, mass, damping);
-  add_coordinates(model, dof, state, contact_time, mass, damping);
+  add_coordinates(model, dof, state, mass, damping);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     const NodalInertia& inertia = model.inertias[i];
     const int first = dof.first[i], spin = first + 3;

@@ -16,8 +16,7 @@ struct NodalDynamics {
   Eigen::VectorXd force;                ///< forces along world axes, moments in the node's own axes, efforts
 };
 
-/// `contact_time`: of stops (Scheme::contact_time) [s].
-NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
+NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state,
                              const CoordinateRates& rates);
 
 /// A quantity that has a damper, and that is a linear function of a few rows of MotionMaps: the strains at a point of a

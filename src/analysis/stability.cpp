@@ -141,8 +141,8 @@ SoftMotions::SoftMotions(const Matrix& whole, Eigen::Index multipliers) : unknow
 }
 
 /// By how much the forces on the unknowns grow as the factor of gravity and loads grows from 0 to 1.
-Eigen::VectorXd load_forces(const Model& model, const Scheme& scheme, const State& equilibrium) {
-  StepSystem system(model, exact_equilibrium(scheme.contact_time), BackendChoice::Matrix);
+Eigen::VectorXd load_forces(const Model& model, const State& equilibrium) {
+  StepSystem system(model, exact_equilibrium(), BackendChoice::Matrix);
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(system.degrees_of_freedom().unknowns);
   for (const double factor : {0.0, 1.0}) {
     system.begin_equilibrium(equilibrium, factor);
@@ -202,14 +202,14 @@ double neutral_curvature(const Model& model, const State& equilibrium) {
   return kNeutral * work_of_forces(model, equilibrium);
 }
 
-Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium) {
+Stability judge_stability(const Model& model, const State& equilibrium) {
   Stability stability;
   if (model.coordinates.size() > kMostCoordinates) {
     if (model.closures.empty() && !is_circulatory(model, equilibrium))
-      stability.motion = falling_motion(model, scheme, equilibrium);
+      stability.motion = falling_motion(model, equilibrium);
     return stability;
   }
-  const LinearisedMotion system(model, equilibrium, scheme.contact_time);
+  const LinearisedMotion system(model, equilibrium);
   if (system.freedoms() <= 0) return stability;
   const double neutral = neutral_curvature(model, equilibrium);
   const Matrix curvature = system.curvature();
@@ -227,7 +227,7 @@ Stability judge_stability(const Model& model, const Scheme& scheme, const State&
     }
   if (!unstable.empty() && !system.is_circulatory())
     stability.motion =
-        motion_away(model, system, curvature, unstable, soft.answer(load_forces(model, scheme, equilibrium)),
+        motion_away(model, system, curvature, unstable, soft.answer(load_forces(model, equilibrium)),
                     kStiffnessRoundOff * work_of_forces(model, equilibrium));
   return stability;
 }

@@ -7,7 +7,6 @@
 
 #include "model/model.h"
 #include "model/state.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 
@@ -34,6 +33,6 @@ double neutral_curvature(const Model& model, const State& equilibrium);
 /// and differ by the elements' error. Two cases are not judged, and count as stable: loads without a potential, for
 /// which there is natural_modes(), and such long chains with loops that multipliers close.
 /// @throws std::runtime_error if the stiffness is not finite.
-Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium);
+Stability judge_stability(const Model& model, const State& equilibrium);
 
 }  // namespace flexarm

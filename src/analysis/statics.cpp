@@ -126,7 +126,7 @@ class EquilibriumSearch {
     if (!let_servos_integrate()) return false;
     // Beams may buckle while joints stand still.
     for (int fall = 0;; ++fall) {
-      const Stability stability = judge_stability(model_, scheme_, state_);
+      const Stability stability = judge_stability(model_, state_);
       result_.loose_link = stability.loose_link;
       if (stability.is_stable() || descent_->is_rigid()) break;
       if (result_.falling_link.empty()) result_.falling_link = stability.motion.link;
@@ -140,7 +140,7 @@ class EquilibriumSearch {
   void name_fall() {
     const State* left = descent_->left();
     if (left && result_.falling_link.empty())
-      result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
+      result_.falling_link = judge_stability(model_, *left).motion.link;
   }
 
   /// Steps that fail are halved where there are beams. Rigid mechanisms have the descent.
@@ -181,7 +181,7 @@ class EquilibriumSearch {
 
   bool settle_for(Equilibrium wanted) {
     for (int fall = 0; fall < kMostFalls; ++fall) {
-      const Stability stability = judge_stability(model_, scheme_, state_);
+      const Stability stability = judge_stability(model_, state_);
       result_.loose_link = stability.loose_link;
       if (stability.is_stable()) return true;
       if (result_.falling_link.empty()) result_.falling_link = stability.motion.link;

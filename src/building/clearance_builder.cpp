@@ -132,11 +132,11 @@ class ClearanceBuilder {
 
   ContactLaw law_of(const scene::ClearanceDescription& clearance, double at_a_time, double inside) const {
     LawRequest request{1 / (1 / mass_of_link(clearance.joint.parent) + 1 / mass_of_link(clearance.joint.child)),
-                       at_a_time, clearance.stiffness};
+                       at_a_time, clearance.contact_time.value_or(plan_.scene.contact_time), clearance.stiffness};
     request.restitution = clearance.restitution;
     request.friction = clearance.friction;
-    ContactLaw law = law_of_points(request, plan_.scene.integrator.step);
-    // A stiffness that is chosen to suit the step may be soft, so the depth keeps it from giving way by more than the
+    ContactLaw law = law_of_points(request);
+    // A stiffness by the contact time may be soft, so the depth keeps it from giving way by more than the
     // play. A given stiffness is the law.
     if (!clearance.stiffness) law.depth = clearance.radius;
     allow_start(law, clearance.stiffness ? 0 : inside);

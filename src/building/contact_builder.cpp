@@ -225,12 +225,13 @@ class ContactBuilder {
                     double at_a_time) const {
     const double inverse = 1 / stations.mass + 1 / shapes.mass;
     const scene::SurfaceHints hints = hints_of(stations, shapes);
-    LawRequest request{inverse > 0 ? 1 / inverse : mass_of(model_), at_a_time, contact.stiffness};
+    LawRequest request{inverse > 0 ? 1 / inverse : mass_of(model_), at_a_time,
+                       contact.contact_time.value_or(scene_.contact_time), contact.stiffness};
     // A hint may only make the contact softer: Gazebo accepts stiffnesses that its steps cannot resolve.
     request.softest = hints.stiffness.value_or(kInfinity);
     request.restitution = contact.restitution;
     request.friction = contact.friction.value_or(hints.friction.value_or(0));
-    ContactLaw law = law_of_points(request, scene_.integrator.step);
+    ContactLaw law = law_of_points(request);
     const double size = std::min(stations.size, shapes.size);
     law.depth = kContactDepth * size;
     law.spinning = contact.spinning;

@@ -4,25 +4,24 @@
 #include <cmath>
 
 #include "math/pi.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
 
-/// The stiffness of sticking friction is at most kStiffestGrip m / h^2.
-constexpr double kStiffestGrip = 16;
+/// The stiffness of sticking friction is at most this times that of a contact of the given contact time.
+constexpr double kStiffestGrip = 1600 / (kPi * kPi);
 
 }  // namespace
 
-ContactLaw law_of_points(const LawRequest& request, double step) {
-  const double frequency = kPi / (kContactSteps * step);
+ContactLaw law_of_points(const LawRequest& request) {
+  const double frequency = kPi / request.contact_time;
   ContactLaw law;
   const double usual = request.mass * frequency * frequency / request.at_a_time;
   law.stiffness = request.stiffness.value_or(std::min(usual, request.softest));
   law.frequency = std::sqrt(law.stiffness * request.at_a_time / request.mass);
   law.restitution = {request.restitution.values, request.restitution.speeds};
   law.friction = request.friction;
-  law.grip = std::min(law.stiffness, kStiffestGrip * request.mass / (step * step) / request.at_a_time);
+  law.grip = std::min(law.stiffness, kStiffestGrip * usual);
   return law;
 }
 

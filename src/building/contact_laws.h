@@ -18,13 +18,14 @@ constexpr double kThrownOut = 0.1;  // m/s; largest speed at which bodies that o
 struct LawRequest {
   double mass;                           ///< that a hit moves: 1 / m = 1 / m1 + 1 / m2 of both bodies [kg]
   double at_a_time;                      ///< number of points that touch at a time
-  std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: such that a hit lasts kContactSteps steps
+  double contact_time;                   ///< that a hit lasts [s]
+  std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: by the contact time
   double softest = std::numeric_limits<double>::infinity();  ///< bound of a stiffness that is not given [N/m]
   scene::RestitutionDescription restitution = {};
   double friction = 0;
 };
-/// Law of each point, without a depth. `step`: of the scene [s]. (docs/notes/contact.md 2, 3)
-ContactLaw law_of_points(const LawRequest& request, double step);
+/// Law of each point, without a depth. (docs/notes/contact.md 2, 3)
+ContactLaw law_of_points(const LawRequest& request);
 
 /// Mass of a body [kg]. For a body without mass, which other bodies hold, the mass of the whole mechanism. Infinite for
 /// the world (-1).

@@ -153,7 +153,7 @@ std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& 
   for (std::size_t i = 0; i < count; ++i) {
     if (is_massless(i) && !in_loops[i].is_determined) massless.push_back(static_cast<int>(i));
     if (std::optional<LimitStop>& limit = model.coordinates[i].limit)
-      limit->inertia = in_loops[i].inertia > 0 ? in_loops[i].inertia : moved[i].inertia;
+      limit->carry(in_loops[i].inertia > 0 ? in_loops[i].inertia : moved[i].inertia);
   }
   return massless;
 }

@@ -109,7 +109,10 @@ void Mechanism::add_coordinates(const scene::JointDescription& joint, const std:
     coordinate.effort_limit = joint.effort_limit;
     if (joint.limits) {
       coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
-      if (joint.limits->restitution) coordinate.limit->damping_ratio = stop_damping_ratio(*joint.limits->restitution);
+      LimitStop& stop = *coordinate.limit;
+      if (joint.limits->restitution) stop.damping_ratio = stop_damping_ratio(*joint.limits->restitution);
+      stop.contact_time = joint.limits->contact_time.value_or(joint.limits->stiffness ? 0 : contact_time);
+      stop.stiffness = joint.limits->stiffness.value_or(0);
     }
     model.coordinates.push_back(coordinate);
   }

@@ -38,6 +38,7 @@ class TreeBuilder {
     for (const std::optional<LinkMesh>& link : plan_.meshes)
       if (link) count += link->mesh.nodes.size();
     tree_.reserve_nodes(count + 2 * plan_.tree.joints.size());
+    tree_.contact_time = plan_.scene.contact_time;
     place_link(plan_.tree.root, {-1, Pose{Vector3::Zero() - plan_.origin, Quaternion::Identity()}});
     for (const scene::JointDescription* joint : plan_.tree.joints)
       tree_.tree_joints.push_back(joint->kind == scene::JointKind::Slide ? add_slide(*joint) : add_joint(*joint));

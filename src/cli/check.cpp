@@ -236,8 +236,7 @@ std::string loop_joint_of(const scene::SceneDescription& scene, const std::strin
 
 void print_dead_point(const Simulation& simulation) {
   if (simulation.scene().loop_joints.empty()) return;
-  const double contact_time = scheme_of(simulation).contact_time;
-  const std::string link = link_at_dead_point(model_of(simulation), state_of(simulation), contact_time);
+  const std::string link = link_at_dead_point(model_of(simulation), state_of(simulation));
   if (link.empty()) return;
   fmt::print(
       "\nat a dead point: the loop that joint '{}' closes can move without force to first order, but strains link '{}' "

@@ -165,7 +165,7 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
   if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.of_servo(servo.feedforward).acting;
   // In a composition, the errors of the sub-steps cancel only if all sub-steps use the same rule. So there is no
   // relaxation.
-  const double step = configuration_.step(), of_scene = scheme.contact_time / kContactSteps;
+  const double step = configuration_.step(), of_scene = scheme.blur;
   if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static && step > kStrike * of_scene)
     input.relaxation = std::min(of_scene, step);
   return input;

@@ -14,7 +14,7 @@ Scheme dissipative_scheme(const Scheme& scheme, double step) {
   out.dissipation = numerical_dissipation(out.order, kDefaultRho, step);
   // Dampers and stops have the same constants as in the scheme that is replaced.
   out.damping_relaxation = scheme.damping_relaxation;
-  out.contact_time = scheme.contact_time;
+  out.blur = scheme.blur;
   out.may_be_planar = scheme.may_be_planar;
   return out;
 }

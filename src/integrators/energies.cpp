@@ -76,8 +76,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
   }
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.limit)
-      out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),
-                                state.released[coordinate.joint].displacement[coordinate.component]);
+      out.strain += stop_energy(*coordinate.limit, state.released[coordinate.joint].displacement[coordinate.component]);
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];

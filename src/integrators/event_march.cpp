@@ -33,7 +33,6 @@ StepSettings settings_of_march() {
 EventMarch::EventMarch(const Model& model, const Scheme& scheme)
     : model_(model),
       at_end_(!scheme.is_incremental()),
-      contact_time_(scheme.contact_time),
       settings_(settings_of_march()),
       system_(model, scheme),
       newton_(system_, settings_),
@@ -41,8 +40,8 @@ EventMarch::EventMarch(const Model& model, const Scheme& scheme)
       velocities_(model.nodes.size()) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (!model.coordinates[i].limit) continue;
-    const StopPenalty penalty = stop_penalty(model.coordinates[i], contact_time_);
-    for (int side = 0; side < 2; ++side) corners_.push_back({false, static_cast<int>(i), side, penalty.damping});
+    const double damping = model.coordinates[i].limit->damping;
+    for (int side = 0; side < 2; ++side) corners_.push_back({false, static_cast<int>(i), side, damping});
   }
   const std::vector<FrictionCarrier>& carriers = system_.friction().carriers();
   for (std::size_t c = 0; c < carriers.size(); ++c)
@@ -80,8 +79,7 @@ void EventMarch::restart(const State& state) {
       const double now = state.rests[corner.coordinate] > 0 ? 0 : rate(model_, state, corner.coordinate);
       set_stage(i, (now > 0) - (now < 0));
     } else {
-      const StopReach now = reach(corner, model_, state);
-      set_stage(i, now.depth <= 0 ? kOut : now.push > 0 ? kIn : kReleased);
+      set_stage(i, static_cast<int>(stop_stage(reach(corner, model_, state))));
     }
   }
 }
@@ -98,7 +96,7 @@ double EventMarch::rate(const Model& model, const State& state, int index) {
 
 StopReach EventMarch::reach(const Corner& corner, const Model& model, const State& state) {
   const Coordinate& coordinate = model.coordinates[corner.coordinate];
-  return stop_reach(*coordinate.limit, stop_penalty(coordinate, contact_time_), corner.place == 1,
+  return stop_reach(*coordinate.limit, corner.place == 1,
                     state.released[coordinate.joint].displacement[coordinate.component % 3],
                     rate(model, state, corner.coordinate));
 }
@@ -108,9 +106,8 @@ double EventMarch::guard(std::size_t index, int stage, const Model& model, const
   const Corner& corner = corners_[index];
   if (corner.is_friction) return stage * rate(model, state, corner.coordinate);
   const StopReach now = reach(corner, model, state);
-  if (stage == kOut) return -now.depth;
-  if (stage == kIn) return now.push;
-  return now.depth > 0 ? -now.push : 1.0;
+  if (stage == kReleased && now.depth <= 0) return 1;  // march() notices that
+  return stop_guard(static_cast<StopStage>(stage), now);
 }
 
 double EventMarch::guard_now(std::size_t index, const State& state) {
@@ -146,10 +143,9 @@ bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
     const bool is_deep = corner.place == 0 ? std::min(begin, end) < limit.lower : std::max(begin, end) > limit.upper;
     if (!is_deep && stages_[i] == kOut) continue;
     if (stages_[i] != kIn) return true;
-    const StopPenalty penalty = stop_penalty(coordinate, contact_time_);
     const double mean = (end - begin) / configuration.step();
     const auto is_quiet = [&](double position, double speed) {
-      const StopReach now = stop_reach(limit, penalty, corner.place == 1, position, speed);
+      const StopReach now = stop_reach(limit, corner.place == 1, position, speed);
       return now.depth > 0 && std::abs(corner.damping * now.rate) <= kQuiet * now.push;
     };
     if (!is_quiet(begin, rate(model_, state, corner.coordinate)) || !is_quiet(end, mean)) return true;

@@ -70,7 +70,11 @@ class EventMarch {
 
   /// Stages of stops: out of contact, in contact, and inside but without force. Stages of friction are the sign of its
   /// slip, 0 while it sticks.
-  enum Stage { kOut = 0, kIn = 1, kReleased = 2 };
+  enum Stage {
+    kOut = static_cast<int>(StopStage::Out),
+    kIn = static_cast<int>(StopStage::In),
+    kReleased = static_cast<int>(StopStage::Released)
+  };
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -101,7 +105,6 @@ class EventMarch {
 
   const Model& model_;
   bool at_end_;
-  double contact_time_;
   StepSettings settings_;
   StepSystem system_;
   NewtonIteration newton_;

@@ -23,10 +23,7 @@ void ExplicitStep::find_efforts(const State& state, const std::vector<double>& n
     const ExplicitRotors::Motion link = link_motion(i, numbers);
     const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
     double& applied = applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
-    if (const int place = margin_places_[i]; place >= 0) {
-      margins_[place] = coordinate.effort_limit - of_scene;
-      margins_[place + 1] = coordinate.effort_limit + of_scene;
-    }
+    margins_.set(limits_[i], of_scene, -coordinate.effort_limit, coordinate.effort_limit);
     if (coordinate.motion >= 0) {
       efforts_[places_[i]] = applied = 0;  // until the motion is known to need one
     } else if (coordinate.actuator >= 0) {
@@ -48,8 +45,10 @@ void ExplicitStep::drive(std::size_t actuator, const State& state, const Explici
   applied = motors_.effort(actuator, state, applied, rotor, link, numbers[integral], change[integral]);
   change[work_] += applied * rotor.rate;
   double& effort = efforts_[places_[model_.actuators[actuator].coordinate]] = applied;
-  if (rotors_.place(actuator) >= 0)
-    effort = rotors_.act(actuator, applied, rotor, link, own, change.data() + own_, change[work_ + 1], bodies_);
+  if (rotors_.place(actuator) < 0) return;
+  const double play = 0.5 * model_.actuators[actuator].drive.gear->backlash;
+  margins_.set(plays_[actuator], rotor.angle - link.angle, -play, play);
+  effort = rotors_.act(actuator, applied, rotor, link, own, change.data() + own_, change[work_ + 1], bodies_);
 }
 
 void ExplicitStep::add_passive(std::size_t coordinate, const ExplicitRotors::Motion& link,
@@ -61,10 +60,10 @@ void ExplicitStep::add_passive(std::size_t coordinate, const ExplicitRotors::Mot
     now.at_end = true;
     now.below = events_.contacts(coordinate)[0];
     now.above = events_.contacts(coordinate)[1];
-    const double passive = passive_effort(data, penalties_[coordinate], now).effort;
+    const double passive = passive_effort(data, now).effort;
     now.increment = 0;
     now.below = now.above = StopContact::ByDepth;
-    const double elastic = passive_effort(data, penalties_[coordinate], now).effort;
+    const double elastic = passive_effort(data, now).effort;
     effort += passive;
     change[work_ + 1] -= (passive - elastic) * link.rate;
   }

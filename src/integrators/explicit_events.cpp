@@ -4,28 +4,26 @@
 
 namespace flexarm {
 
-ExplicitEvents::ExplicitEvents(const Model& model, double contact_time, std::size_t kinks)
+ExplicitEvents::ExplicitEvents(const Model& model, std::size_t kinks)
     : model_(model), kinks_(kinks), contacts_(model.coordinates.size()) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (!model.coordinates[i].limit || is_held(model, model.coordinates[i])) continue;
-    const StopPenalty penalty = stop_penalty(model.coordinates[i], contact_time);
-    for (const bool is_above : {false, true}) sides_.push_back({i, is_above, penalty});
+    for (const bool is_above : {false, true}) sides_.push_back({i, is_above});
   }
 }
 
 bool ExplicitEvents::set(Side& side, Stage stage) {
   const bool changes = side.stage != stage;
   side.stage = stage;
-  contacts_[side.coordinate][side.is_above] = stage == Stage::Free ? StopContact::ByDepth
-                                              : stage == Stage::In ? StopContact::On
-                                                                   : StopContact::Off;
+  contacts_[side.coordinate][side.is_above] = !stage                   ? StopContact::ByDepth
+                                              : stage == StopStage::In ? StopContact::On
+                                                                       : StopContact::Off;
   return changes;
 }
 
 double ExplicitEvents::guard(const Side& side, const StopReach& at) {
-  if (side.stage == Stage::In) return at.push;
-  if (side.stage == Stage::Out) return -at.depth;
-  return side.now.depth < 0 ? at.depth : -at.push;
+  const bool has_left = side.stage == StopStage::Released && side.now.depth < 0;
+  return has_left ? at.depth : stop_guard(*side.stage, at);
 }
 
 void ExplicitEvents::begin_kinks(const std::vector<double>& margins) {
@@ -52,8 +50,8 @@ std::optional<std::size_t> ExplicitEvents::first() const {
   double earliest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < sides_.size() + kinks_.size(); ++i) {
     const bool is_stop = i < sides_.size();
-    if (is_stop && sides_[i].stage == Stage::Free) continue;
-    if (is_stop && sides_[i].stage == Stage::Out && sides_[i].now.push <= 0) continue;
+    if (is_stop && !sides_[i].stage) continue;
+    if (is_stop && sides_[i].stage == StopStage::Out && sides_[i].now.push <= 0) continue;
     const double before = low_guard(i), after = guard(i);
     if (!(after < 0)) continue;
     const double fraction = before / (before - after);
@@ -73,14 +71,14 @@ void ExplicitEvents::turn(std::size_t event) {
     return;
   }
   Side& side = sides_[event];
-  if (side.stage == Stage::In)
-    set(side, Stage::Released);
+  if (side.stage == StopStage::In)
+    set(side, StopStage::Released);
   else
-    set(side, side.stage == Stage::Released && side.now.depth < 0 ? Stage::Out : Stage::In);
+    set(side, side.stage == StopStage::Released && side.now.depth < 0 ? StopStage::Out : StopStage::In);
 }
 
 void ExplicitEvents::let_go() {
-  for (Side& side : sides_) set(side, Stage::Free);
+  for (Side& side : sides_) set(side, {});
   for (Kink& kink : kinks_) kink.sign = 0;
 }
 

@@ -17,9 +17,8 @@ namespace flexarm {
 /// Where a motor comes to a limit its effort has a kink, and a step that ends there keeps its order, too.
 class ExplicitEvents {
  public:
-  /// Stops of coordinates that are held do not count. `contact_time`: see stop_penalty(); `kinks`: number
-  /// of margins of begin_kinks().
-  ExplicitEvents(const Model& model, double contact_time, std::size_t kinks);
+  /// Stops of coordinates that are held do not count. `kinks`: number of margins of begin_kinks().
+  ExplicitEvents(const Model& model, std::size_t kinks);
 
   bool any() const { return has_stops() || !kinks_.empty(); }
   bool has_stops() const { return !sides_.empty(); }
@@ -33,14 +32,11 @@ class ExplicitEvents {
     bool changes = false;
     for (Side& side : sides_) {
       side.begin = side.low = side.now = reach(side, motion_of(side.coordinate));
-      changes = set(side, side.begin.depth <= 0 ? Stage::Out
-                          : side.begin.push > 0 ? Stage::In
-                                                : Stage::Released) ||
-                changes;
+      changes = set(side, stop_stage(side.begin)) || changes;
     }
     return changes;
   }
-  /// Completes begin() by numbers that vanish where efforts have kinks (ExplicitStep::margins()).
+  /// Completes begin() by numbers that vanish where efforts have kinks (ExplicitMargins).
   void begin_kinks(const std::vector<double>& margins);
   /// Looks at the end of a step, which has begun at the last call of begin().
   template <class MotionOf>
@@ -62,13 +58,11 @@ class ExplicitEvents {
   void let_go();
 
  private:
-  /// Outside; penetrated, and it pushes; penetrated, but it would have to pull; by its depth, whatever happens.
-  enum class Stage : char { Out, In, Released, Free };
+  using Stage = std::optional<StopStage>;
   struct Side {
     std::size_t coordinate;
     bool is_above;
-    StopPenalty penalty;
-    Stage stage = Stage::Free;
+    Stage stage = {};  ///< empty: it pushes by its depth, whatever happens
     StopReach begin = {}, low = {}, now = {};
   };
   struct Kink {
@@ -76,8 +70,7 @@ class ExplicitEvents {
   };
   template <class Motion>
   StopReach reach(const Side& side, const Motion& motion) const {
-    return stop_reach(*model_.coordinates[side.coordinate].limit, side.penalty, side.is_above, motion.angle,
-                      motion.rate);
+    return stop_reach(*model_.coordinates[side.coordinate].limit, side.is_above, motion.angle, motion.rate);
   }
   bool set(Side& side, Stage stage);
   static double guard(const Side& side, const StopReach& at);

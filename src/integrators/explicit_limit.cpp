@@ -127,7 +127,7 @@ ExplicitLimit explicit_limit(const Model& model, const Scheme& scheme, const Sta
   judge(springs, dampers);
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {  // not all stops are reached at a time
     if (!model.coordinates[i].limit) continue;
-    const StopPenalty stop = stop_penalty(model.coordinates[i], scheme.contact_time);
+    const LimitStop& stop = *model.coordinates[i].limit;
     std::vector<Resistance> stiff, viscous;
     parts.add(stiff, static_cast<int>(i), "stop", 1, 0, stop.stiffness);
     parts.add(viscous, static_cast<int>(i), "stop", 1, 0, stop.damping);

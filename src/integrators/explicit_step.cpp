@@ -29,21 +29,23 @@ const Model& suitable(const Model& model, const Scheme& scheme) {
 /// above the round-off of times at which functions jump.
 constexpr double kInwards = 1e-9;
 
-/// Places of the margins of efforts behind those of motors; -1 where an effort has no limit, or a motor gives it.
-std::vector<int> margin_places(const Model& model, std::size_t first) {
+/// Places of the margins of efforts of the scene that are cut and that no motor gives.
+std::vector<int> limits_of_efforts(const Model& model, ExplicitMargins& margins) {
   std::vector<int> places;
-  places.reserve(model.coordinates.size());
-  int next = static_cast<int>(first);
   for (const Coordinate& coordinate : model.coordinates) {
     const bool is_cut = coordinate.effort >= 0 && coordinate.actuator < 0 && coordinate.effort_limit > 0;
-    places.push_back(is_cut ? next : -1);
-    if (is_cut) next += 2;
+    places.push_back(is_cut ? margins.add() : ExplicitMargins::kNone);
   }
   return places;
 }
 
-std::size_t count_if_placed(const std::vector<int>& places) {
-  return static_cast<std::size_t>(std::count_if(places.begin(), places.end(), [](int place) { return place >= 0; }));
+std::vector<int> plays_of_gears(const Model& model, ExplicitMargins& margins) {
+  std::vector<int> places;
+  for (const Actuator& actuator : model.actuators) {
+    const bool has_play = actuator.drive.gear && actuator.drive.gear->backlash > 0;
+    places.push_back(has_play ? margins.add() : ExplicitMargins::kNone);
+  }
+  return places;
 }
 
 int position_count(JointMapKind kind) {
@@ -66,12 +68,12 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
       tableau_(*scheme.tableau),
       bodies_(model),
       dependent_(model, bodies_, tableau_),
-      motors_(model, tableau_),
+      motors_(model, tableau_, margins_),
       rotors_(model),
       reactions_(model),
-      margin_places_(margin_places(model, motors_.margins().size())),
-      margins_(motors_.margins().size() + 2 * count_if_placed(margin_places_)),
-      events_(model, scheme.contact_time, margins_.size()),
+      limits_(limits_of_efforts(model, margins_)),
+      plays_(plays_of_gears(model, margins_)),
+      events_(model, margins_.numbers().size()),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),
       released_(model.joints.size()),
@@ -94,9 +96,8 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
   efforts_.resize(bodies_.rate_count());
   no_efforts_.resize(bodies_.rate_count());
   armatures_.resize(bodies_.rate_count());
-  penalties_.reserve(model.coordinates.size()), places_.reserve(model.coordinates.size());
+  places_.reserve(model.coordinates.size());
   for (const Coordinate& coordinate : model.coordinates) {
-    penalties_.push_back(stop_penalty(coordinate, scheme.contact_time));
     places_.push_back(rate_of(coordinate));
     if (places_.back() >= 0) armatures_[places_.back()] = armature(model, coordinate);
   }
@@ -274,11 +275,6 @@ bool ExplicitStep::find_impulses(const State& state, std::size_t stage) {
     if (rotors_.place(i) < 0) efforts_[places_[model_.actuators[i].coordinate]] += impulses_[i];
   }
   return jumps;
-}
-
-const std::vector<double>& ExplicitStep::margins() {
-  std::copy(motors_.margins().begin(), motors_.margins().end(), margins_.begin());
-  return margins_;
 }
 
 /// Half of the work of impulses on rotors with a motion of their own, if all of it were done at their present rates.

@@ -76,9 +76,6 @@ class ExplicitStep {
              const std::vector<double>& numbers, std::vector<double>& change, double& applied);
   ExplicitRotors::Motion link_motion(std::size_t coordinate, const std::vector<double>& numbers) const;
   bool find_impulses(const State& state, std::size_t stage);
-  /// Those of motors, and how far efforts of the scene on other coordinates were from their limits, when efforts were
-  /// found last [N m or N].
-  const std::vector<double>& margins();
   double half_work_on_rotors(const std::vector<double>& numbers) const;
   void normalise(std::vector<double>& numbers) const;
   void write_positions(std::vector<double>& numbers) const;
@@ -92,15 +89,14 @@ class ExplicitStep {
   const ExplicitTableau& tableau_;
   ArticulatedBodies bodies_;
   DependentRates dependent_;
+  ExplicitMargins margins_;
   ExplicitMotors motors_;
   ExplicitRotors rotors_;
   ExplicitReactions reactions_;
-  std::vector<int> margin_places_;  // per coordinate: of its effort's margins; -1: it has no limit, or a motor
-  std::vector<double> margins_;
+  std::vector<int> limits_, plays_;  // places among the margins: per coordinate, per actuator
   ExplicitEvents events_;
   std::vector<Joint> joints_;
-  std::vector<StopPenalty> penalties_;  // per coordinate
-  std::vector<int> places_;             // per coordinate: its rate; -1: it is held
+  std::vector<int> places_;  // per coordinate: its rate; -1: it is held
   std::vector<NodePose> poses_;
   std::vector<Vector6> velocities_;
   std::vector<Released> released_;

@@ -17,7 +17,6 @@ JointFold::JointFold(const StepConfiguration& configuration, const JointEfforts&
       slide_maps_(most_active_nodes(configuration.model().slide_lines)),
       mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
   for (const Coordinate& coordinate : configuration.model().coordinates) {
-    stops_.push_back(stop_penalty(coordinate, configuration.scheme().contact_time));
     if (resists(coordinate) || coordinate.sticks) is_resisted_[coordinate.joint] = true;
   }
 }
@@ -48,7 +47,7 @@ void JointFold::add_resistance(int j, Balance& balance) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
     const CoordinateStep moved = configuration_.coordinate_step(index, change[k]);
-    const PassiveEffort passive = passive_effort(coordinate, stops_[index], moved);
+    const PassiveEffort passive = passive_effort(coordinate, moved);
     const PassiveEffort friction = friction_.constant_effort(static_cast<int>(index), moved);
     balance.dissipated += passive.dissipated + friction.dissipated;
     residual[k] -= weight * (passive.effort + friction.effort);

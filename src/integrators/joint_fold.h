@@ -34,8 +34,7 @@ class JointFold {
   const JointEfforts& efforts_;
   DryFrictionStep& friction_;
   const Actuators& actuators_;
-  std::vector<StopPenalty> stops_;  // per coordinate
-  std::vector<bool> is_resisted_;   // per joint: one of its coordinates has damping, a stop or friction
+  std::vector<bool> is_resisted_;  // per joint: one of its coordinates has damping, a stop or friction
   FoldMaps fold_maps_;
   SlideMaps slide_maps_;
   std::vector<MimicMap> mimic_maps_;

@@ -75,7 +75,8 @@ NeighbourSteps::NeighbourSteps(const Model& model, const Scheme& scheme)
   march_ = std::make_unique<EventMarch>(model, scheme);
   if (!march_->has_corners()) march_.reset();
   if (march_) system_.hold_modes(&march_->modes());
-  longest_hit_ = kLongestHit * scheme.contact_time;
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.limit) longest_hit_ = std::max(longest_hit_, kLongestHit * hit_time(*coordinate.limit));
 }
 
 void NeighbourSteps::measure(Direction& direction, const State& state) {
@@ -215,7 +216,10 @@ void NeighbourSteps::follow(const State& state, const StepSystem& solved) {
   }
   if (march_ && followed_ == 0) march_->restart(state);
   ++followed_;
-  if (march_ && march_->is_wanted(state, solved)) return go_over_events(state, step);
+  const bool is_led = solved.configuration().led_to();  // so short that nothing else happens
+  if (march_ && was_led_) march_->restart(state);
+  was_led_ = is_led;
+  if (march_ && !is_led && march_->is_wanted(state, solved)) return go_over_events(state, step);
   if (!march_) note_stops(state, solved);
   follow_piece(state, solved);
 }
@@ -235,7 +239,13 @@ void NeighbourSteps::follow_piece(const State& state, const StepSystem& solved) 
   });
 }
 
+/// Where motions have kinks, laws take the branches of the run, which no event has announced.
+void NeighbourSteps::hold_modes(StepSystem& system, const StepSystem& solved) const {
+  if (march_) system.hold_modes(solved.configuration().led_to() ? nullptr : &march_->modes());
+}
+
 bool NeighbourSteps::make_factors(const State& state, const StepSystem& solved) {
+  hold_modes(system_, solved);
   system_.begin_beside(solved, state, made_);
   factorised_step_ = 0;
   if (!system_.evaluate(true) || !system_.tangent().factorise()) return false;
@@ -245,7 +255,7 @@ bool NeighbourSteps::make_factors(const State& state, const StepSystem& solved) 
 
 std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, const StepSystem& solved) {
   StepSystem& system = neighbour.system ? *neighbour.system : system_;
-  if (march_) system.hold_modes(&march_->modes());
+  hold_modes(system, solved);
   const double step = solved.configuration().step();
   guess_ = made_;
   guess_.steps[0] = step;

@@ -92,6 +92,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   void note_stops(const State& state, const StepSystem& solved);
   void put_beside(Direction& direction, const State& state, double step);
   void place_slaves(Neighbour& neighbour);
+  void hold_modes(StepSystem& system, const StepSystem& solved) const;
   bool make_factors(const State& state, const StepSystem& solved);
   /// Steps a neighbour. Returns the reason if that fails, otherwise an empty string.
   std::string advance(Neighbour& neighbour, const State& state, const StepSystem& solved);
@@ -109,6 +110,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   std::string lost_;
   double factorised_step_ = 0;  // step size for which the factors are valid [s]; 0: no factors
   long followed_ = 0;           // number of sub-steps
+  bool was_led_ = false;        // in the last sub-step (StepConfiguration::lead())
   int updates_ = 0;             // in the present sub-step, of all neighbours
   // Increments of the run in the present sub-step, and the expected increments of a neighbour.
   IncrementHistory made_, guess_;

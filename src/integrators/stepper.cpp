@@ -31,6 +31,8 @@ constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
 constexpr double kLateRelease = 1e-3;
 /// Number of halvings of a step in which forces have a kink, whose error is proportional to the square of the step.
 constexpr int kKinkHalvings = 3;
+/// The least tolerance of Newton's method where motions have kinks: round-off.
+constexpr double kLeastTolerance = 1e-13;
 
 }  // namespace
 
@@ -40,6 +42,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
       settings_(settings),
       system_(model, scheme, BackendChoice::Fastest, Space::PlaneWhereFound),
       newton_(system_, settings_),
+      kinks_(model, scheme),
       may_release_(
           std::any_of(model.joints.begin(), model.joints.end(), [](const auto& j) { return j.leaving >= 0; })) {
   for (std::vector<double>& increment : before_.history.increments)
@@ -169,7 +172,8 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   state.drives.begin();
   state.transmitted.begin();
   if (follower_) follower_->begin_step();
-  if (!do_sub_steps(state, deadline, result)) return result;
+  const double struck = follow_kinks(state, result);
+  if (!do_sub_steps(state, settings_.step - struck, deadline, result)) return result;
   const double done = settings_.step - rest_;
   state.time = rest_ == 0 ? step_end(begin_, settings_.step) : begin_ + done;
   if (explicit_) {  // they are known at the end
@@ -185,7 +189,28 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   return result;
 }
 
-bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& result) {
+double Stepper::follow_kinks(State& state, StepResult& result) {
+  if (!kinks_.found(state, settings_.step)) return 0;
+  const double length = MotionKinks::kShort * settings_.step;
+  // In so short a time nothing happens, and what Newton's method leaves makes a large error of the velocity.
+  const StepSettings settings = settings_;
+  settings_.events = {};
+  settings_.tolerance = std::max(kLeastTolerance, settings.tolerance * MotionKinks::kShort);
+  double done = 0;
+  system_.lead(&kinks_.places());
+  if (simple_step(state, length, result)) {
+    done += length;
+    kinks_.let_go();
+    if (simple_step(state, length, result)) done += length;
+  }
+  system_.lead(nullptr);
+  settings_ = settings;
+  newton_.forget_factors();
+  state.history.clear();  // the motion does not go on as before
+  return done;
+}
+
+bool Stepper::do_sub_steps(State& state, double duration, const Deadline& deadline, StepResult& result) {
   const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);
   std::int64_t done = 0;  // in units of step / 2^finest
@@ -196,7 +221,7 @@ bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& r
   };
   while (done < whole) {
     const int level = state.halving_level;
-    const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
+    const bool is_done = sub_step(state, std::ldexp(duration, -level), result);
     const bool is_late = level > 0 && deadline.has_passed();
     result.deepest_halving = std::max(result.deepest_halving, level);
     if (!is_done && result.reason == StepResult::Reason::EventWithin) return false;
@@ -220,7 +245,7 @@ bool Stepper::do_sub_steps(State& state, const Deadline& deadline, StepResult& r
       state.good_steps = 0;
     }
   }
-  rest_ = std::ldexp(settings_.step, -finest) * static_cast<double>(whole - done);
+  rest_ = std::ldexp(duration, -finest) * static_cast<double>(whole - done);
   return true;
 }
 
@@ -246,7 +271,6 @@ StepResult Stepper::initialise_accelerations(State& state) {
   settings.step = h;
   settings.events = {};
   Scheme scheme = *find_scheme("m1");
-  scheme.contact_time = scheme_.contact_time;
   scheme.heeds_slide_schemes = false;  // the slides' schemes were chosen for another scheme
   Stepper momentum(model_, scheme, settings);
   State moved = state;

@@ -10,7 +10,7 @@ StopContacts::StopContacts(StepConfiguration& configuration) : configuration_(co
     const Coordinate& coordinate = coordinates[index];
     if (!coordinate.limit) continue;
     const Coordinate& leader = coordinate.mimicked >= 0 ? coordinates[coordinate.mimicked] : coordinate;
-    stopped_.push_back({index, &leader, stop_penalty(coordinate, configuration.scheme().contact_time), 0, 0});
+    stopped_.push_back({index, &leader, 0, 0});
   }
 }
 
@@ -58,9 +58,9 @@ bool StopContacts::hits_too_fast(double refinement) {
     const Coordinate& limited = coordinate(stopped);
     const double increment = configuration_.increment_of(limited);
     const CoordinateStep change = configuration_.coordinate_step(stopped.index, increment);
-    if (!is_coarse(*limited.limit, stopped.penalty, change, refinement)) continue;
+    if (!is_coarse(*limited.limit, change, refinement)) continue;
     configuration_.find_begin_rates();
-    if (swings(*limited.limit, stopped.penalty, change, begin_rate(stopped), refinement)) return true;
+    if (swings(*limited.limit, change, begin_rate(stopped), refinement)) return true;
   }
   return false;
 }
@@ -80,7 +80,7 @@ void StopContacts::note_events(FirstEvent& first) {
 void StopContacts::note_leaving(const Stopped& stopped, bool is_above, FirstEvent& first) const {
   const Coordinate& limited = coordinate(stopped);
   const auto push = [&](double position, double rate) {
-    return stop_reach(*limited.limit, stopped.penalty, is_above, position, rate).push;
+    return stop_reach(*limited.limit, is_above, position, rate).push;
   };
   const double before = push(begin_position(stopped), begin_rate(stopped));
   const double after = push(position(limited), configuration_.end_rate(limited));
@@ -91,7 +91,7 @@ bool StopContacts::may_hit() {
   configuration_.find_begin_rates();
   return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {
     const CoordinateStep change = configuration_.coordinate_step(stopped.index, 0);
-    return is_long_for_a_hit(*coordinate(stopped).limit, stopped.penalty, change, begin_rate(stopped));
+    return is_long_for_a_hit(*coordinate(stopped).limit, change, begin_rate(stopped));
   });
 }
 

@@ -26,9 +26,8 @@ class StopContacts {
 
  private:
   struct Stopped {
-    std::size_t index;         // of the coordinate
-    const Coordinate* leader;  // the coordinate that this one follows, or itself
-    StopPenalty penalty;
+    std::size_t index;                  // of the coordinate
+    const Coordinate* leader;           // the coordinate that this one follows, or itself
     double position, leading_position;  // before the update
   };
   const Coordinate& coordinate(const Stopped& stopped) const;

@@ -23,7 +23,7 @@ bool is_coarse_turn(double begin_rate, double end_rate, double refinement) {
          kLargestTurn;
 }
 
-PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change) {
+PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
   PassiveEffort out;
   const double friction = coordinate.sticks ? 0 : coordinate.friction;
   if (change.step != 0 && (coordinate.damping > 0 || friction > 0)) {
@@ -35,7 +35,7 @@ PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& pe
     out.dissipated = -out.effort * change.increment;
   }
   if (coordinate.limit) {
-    const PassiveEffort stop = stop_effort(*coordinate.limit, penalty, change);
+    const PassiveEffort stop = stop_effort(*coordinate.limit, change);
     out.effort += stop.effort;
     out.slope += stop.slope;
     out.dissipated += stop.dissipated;

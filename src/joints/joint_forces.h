@@ -30,6 +30,6 @@ inline bool resists(const Coordinate& coordinate) {
   return coordinate.damping > 0 || (coordinate.friction > 0 && !coordinate.sticks) || coordinate.limit;
 }
 /// Returns the effort of damping, stops, and smooth friction of constant capacity.
-PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change);
+PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change);
 
 }  // namespace flexarm

@@ -19,6 +19,8 @@ constexpr double kLargestPart = 0.5;
 constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 16;
 /// Largest change of the oscillation over a step, relative to its amplitude, that counts as resting on the stop.
 constexpr double kSwing = 0.5;
+/// Part of a hit over which the damper may take hold at most. Longer steps are halved.
+constexpr double kLongestBlur = 0.1;
 /// A step may cross at most this part of the remaining way to the largest penetration.
 constexpr double kMuch = 0.1;
 
@@ -34,12 +36,12 @@ struct Push {
 
 /// The mean push over a step. The elastic part is the discrete gradient of the energy, so it conserves energy. The
 /// damper acts on the rate of the hardened penetration, so that the push is continuous at touch and release.
-Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penetration& end, double step) {
+Push mean_push(const LimitStop& limit, const Penetration& begin, const Penetration& end, double step) {
   const double x0 = hardened(begin).value;
   const Hardened x1 = hardened(end), rise = quotient(begin, end);
-  const double k = penalty.stiffness, mean = 0.5 * (x0 + x1.value), change = rise.value * (end.depth - begin.depth);
-  return {k * rise.value * mean, k * (rise.slope * mean + 0.5 * rise.value * x1.slope), penalty.damping * change / step,
-          penalty.damping * x1.slope / step, end.is_held};
+  const double k = limit.stiffness, mean = 0.5 * (x0 + x1.value), change = rise.value * (end.depth - begin.depth);
+  return {k * rise.value * mean, k * (rise.slope * mean + 0.5 * rise.value * x1.slope), limit.damping * change / step,
+          limit.damping * x1.slope / step, end.is_held};
 }
 
 /// The rate that the damper feels, and its derivatives with respect to the hardened penetration and the rate.
@@ -57,9 +59,9 @@ FeltRate felt_rate(const Penetration& at, double depth, double rate, double blur
 }
 
 /// The push at an instant.
-Push push_at(const StopPenalty& penalty, double blur, const Penetration& at, double rate, double rate_slope) {
+Push push_at(const LimitStop& limit, double blur, const Penetration& at, double rate, double rate_slope) {
   const Hardened x = hardened(at);
-  const double k = penalty.stiffness, c = penalty.damping;
+  const double k = limit.stiffness, c = limit.damping;
   const FeltRate felt = felt_rate(at, x.value, rate, blur);
   return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt.value,
           c * (x.curvature * felt.value + x.slope * (felt.by_depth * x.slope + felt.by_rate * rate_slope)), at.is_held};
@@ -98,51 +100,62 @@ std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& cha
 }
 
 /// Circular frequency of the oscillator that the coordinate and an undamped stop form [rad/s].
-double frequency(const LimitStop& limit, const StopPenalty& penalty) {
-  return limit.inertia > 0 ? std::sqrt(penalty.stiffness / limit.inertia) : 0.0;
+double frequency(const LimitStop& limit) {
+  return limit.inertia > 0 ? std::sqrt(limit.stiffness / limit.inertia) : 0.0;
 }
 
 /// Effort against the penetration at the end of the step. With Newmark's rule, its work over the step is that of the
 /// mean of the efforts at both ends.
-PassiveEffort effort_at_end(const StopPenalty& penalty, const Side& side, const CoordinateStep& change) {
-  const Push begin = push_at(penalty, change.blur, side.begin, -side.sign * change.begin_rate, 0);
-  const Push end = push_at(penalty, change.blur, side.end, -side.sign * rate_of(change), rate_slope(change));
+PassiveEffort effort_at_end(const LimitStop& limit, const Side& side, const CoordinateStep& change) {
+  const double blur = std::min(change.blur, kLongestBlur * hit_time(limit));
+  const Push begin = push_at(limit, blur, side.begin, -side.sign * change.begin_rate, 0);
+  const Push end = push_at(limit, blur, side.end, -side.sign * rate_of(change), rate_slope(change));
   const double x0 = hardened(side.begin).value, x1 = hardened(side.end).value;
-  const double stored = 0.5 * penalty.stiffness * (x1 - x0) * (x1 + x0);
+  const double stored = 0.5 * limit.stiffness * (x1 - x0) * (x1 + x0);
   const double work = 0.5 * (begin.value() + end.value()) * (side.end.depth - side.begin.depth);
   return {end.value(), end.slope(), work - stored};
 }
 
-PassiveEffort mean_effort(const StopPenalty& penalty, const Side& side, double step) {
-  const Push push = mean_push(penalty, side.begin, side.end, step);
+PassiveEffort mean_effort(const LimitStop& limit, const Side& side, double step) {
+  const Push push = mean_push(limit, side.begin, side.end, step);
   const double way = side.end.depth - side.begin.depth;
   return {push.value(), push.slope(), (push.pulls() ? -push.elastic : push.viscous) * way};
 }
 
 /// Effort of one side against the penetration.
-PassiveEffort one_side(const StopPenalty& penalty, const Side& side, const CoordinateStep& change) {
+PassiveEffort one_side(const LimitStop& limit, const Side& side, const CoordinateStep& change) {
   if (side.is_off || (!side.begin.is_felt() && !side.end.is_felt())) return {};
   if (change.step == 0) {
-    const Push push = push_at(penalty, 0, side.end, 0, 0);
+    const Push push = push_at(limit, 0, side.end, 0, 0);
     return {push.elastic, push.elastic_slope, 0};
   }
-  if (change.at_end) return effort_at_end(penalty, side, change);
-  return mean_effort(penalty, side, change.step);
+  if (change.at_end) return effort_at_end(limit, side, change);
+  return mean_effort(limit, side, change.step);
 }
 
 }  // namespace
 
-StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
-  if (!coordinate.limit) return {};
-  assert(contact_time > 0 && coordinate.limit->damping_ratio > 0);
-  const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
-  return {inertia * omega * omega, 2 * coordinate.limit->damping_ratio * inertia * omega};
+void LimitStop::carry(double moved_inertia) {
+  assert(moved_inertia >= 0 && contact_time >= 0 && damping_ratio > 0);
+  inertia = moved_inertia;
+  if (contact_time > 0) {
+    const double omega = kPi / contact_time;
+    stiffness = inertia * omega * omega;
+    damping = 2 * damping_ratio * inertia * omega;
+  } else {
+    damping = 2 * damping_ratio * std::sqrt(stiffness * inertia);
+  }
 }
 
-PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
+double hit_time(const LimitStop& limit) {
+  if (limit.contact_time > 0) return limit.contact_time;
+  return limit.inertia > 0 ? kPi / frequency(limit) : 0.0;
+}
+
+PassiveEffort stop_effort(const LimitStop& limit, const CoordinateStep& change) {
   PassiveEffort out;
   for (const Side& side : held_sides(limit, change)) {
-    const PassiveEffort push = one_side(penalty, side, change);
+    const PassiveEffort push = one_side(limit, side, change);
     out.effort += side.sign * push.effort;
     out.slope -= push.slope;
     out.dissipated += push.dissipated;
@@ -150,24 +163,24 @@ PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, co
   return out;
 }
 
-StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate) {
+StopReach stop_reach(const LimitStop& limit, bool is_above, double position, double rate) {
   Side side = sides(limit, position, position)[is_above];
   side.end.is_held = true;
   const double inward = -side.sign * rate, x = hardened(side.end).value;
-  return {side.end.depth, inward, penalty.stiffness * x + penalty.damping * inward};
+  return {side.end.depth, inward, limit.stiffness * x + limit.damping * inward};
 }
 
-double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position) {
+double stop_energy(const LimitStop& limit, double position) {
   double energy = 0;
   for (const Side& side : sides(limit, position, position))
-    energy += 0.5 * penalty.stiffness * std::pow(hardened(side.end).value, 2);
+    energy += 0.5 * limit.stiffness * std::pow(hardened(side.end).value, 2);
   return energy;
 }
 
-double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double position) {
+double stop_damping(const LimitStop& limit, double position) {
   double damping = 0;
-  for (const Side& side : sides(limit, position, position)) damping += penalty.damping * hardened(side.end).slope;
-  return is_pinned(limit, position) ? penalty.damping : damping;
+  for (const Side& side : sides(limit, position, position)) damping += limit.damping * hardened(side.end).slope;
+  return is_pinned(limit, position) ? limit.damping : damping;
 }
 
 double admissible_part(const LimitStop& limit, double from, double to) {
@@ -181,8 +194,8 @@ double admissible_part(const LimitStop& limit, double from, double to) {
   return std::max(part, 0.0);
 }
 
-bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double refinement) {
-  const double angle = refinement * frequency(limit, penalty) * std::abs(change.step);
+bool is_coarse(const LimitStop& limit, const CoordinateStep& change, double refinement) {
+  const double angle = refinement * frequency(limit) * std::abs(change.step);
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
     const double steepest = std::max(hardened(side.begin).slope, hardened(side.end).slope);
@@ -193,10 +206,9 @@ bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const Coordin
   return false;
 }
 
-bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate,
-            double refinement) {
+bool swings(const LimitStop& limit, const CoordinateStep& change, double begin_rate, double refinement) {
   assert(change.step != 0 && refinement > 0);
-  const double scale = frequency(limit, penalty), end_rate = 2 * change.increment / change.step - begin_rate;
+  const double scale = frequency(limit), end_rate = 2 * change.increment / change.step - begin_rate;
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
     const double x0 = scale * hardened(side.begin).value, x1 = scale * hardened(side.end).value;
@@ -206,9 +218,8 @@ bool swings(const LimitStop& limit, const StopPenalty& penalty, const Coordinate
   return false;
 }
 
-bool is_long_for_a_hit(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
-                       double begin_rate) {
-  const double scale = frequency(limit, penalty);
+bool is_long_for_a_hit(const LimitStop& limit, const CoordinateStep& change, double begin_rate) {
+  const double scale = frequency(limit);
   for (const Side& side : sides(limit, change.begin, change.begin)) {
     const double way = std::hypot(scale * hardened(side.begin).value, begin_rate) * std::abs(change.step);
     const double room = side.begin.give - std::max(side.begin.depth, 0.0);

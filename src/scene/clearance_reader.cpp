@@ -29,13 +29,14 @@ void refuse_what_needs_a_coordinate(const XmlElement& joint) {
 
 ClearanceDescription read_clearance(const XmlElement& clearance, const XmlElement& joint,
                                     const JointDescription& description) {
-  clearance.expect_only({"radius", "length", "width", "journal", "stiffness", "restitution", "speeds", "friction"});
+  clearance.expect_only(
+      {"radius", "length", "width", "journal", "contact_time", "stiffness", "restitution", "speeds", "friction"});
   ClearanceDescription out;
   out.location = clearance.location();
   out.joint = description;
   out.joint.limits.reset();
   out.radius = clearance.number("radius", kPositive).value_or(0);
-  if (clearance.has("stiffness")) out.stiffness = clearance.number("stiffness", kPositive);
+  read_hardness(clearance, out.contact_time, out.stiffness);
   out.restitution = read_restitution(clearance);
   out.friction = clearance.number("friction", kNonNegative, 0);
   for (auto [attribute, value] : {std::pair("length", &out.length), std::pair("width", &out.width)})

@@ -37,6 +37,13 @@ GroundDescription read_ground(const XmlElement& ground) {
   return out;
 }
 
+void read_hardness(const XmlElement& element, std::optional<double>& contact_time, std::optional<double>& stiffness) {
+  if (element.has("contact_time")) contact_time = element.number("contact_time", kPositive);
+  if (element.has("stiffness")) stiffness = element.number("stiffness", kPositive);
+  if (element.has("contact_time") && element.has("stiffness"))
+    element.attribute_error("contact_time", "the stiffness determines it; leave one of them out");
+}
+
 RestitutionDescription read_restitution(const XmlElement& element) {
   RestitutionDescription out;
   if (!element.has("speeds")) {
@@ -65,10 +72,11 @@ bool is_contact(const XmlElement& element) {
 }
 
 ContactDescription read_contact(const XmlElement& contact) {
-  contact.expect_only({"first", "second", "stiffness", "restitution", "speeds", "friction", "spinning", "rolling"});
+  contact.expect_only(
+      {"first", "second", "contact_time", "stiffness", "restitution", "speeds", "friction", "spinning", "rolling"});
   ContactDescription out;
   static_cast<ContactPair&>(out) = read_pair(contact);
-  if (contact.has("stiffness")) out.stiffness = contact.number("stiffness", kPositive);
+  read_hardness(contact, out.contact_time, out.stiffness);
   out.restitution = read_restitution(contact);
   if (contact.has("friction")) out.friction = contact.number("friction", kNonNegative);
   out.spinning = contact.number("spinning", kNonNegative, 0);

@@ -91,6 +91,10 @@ Sensor read_sensor(const XmlElement& sensor);
 void connect_tendon_sensors(SceneDescription& scene, Findings& findings);
 
 GroundDescription read_ground(const XmlElement& ground);
+/// Reads the attributes `xyz` and `rpy` of <origin>, <child_origin> or the like.
+Pose read_pose(const XmlElement& origin);
+/// Reads the attributes `contact_time` and `stiffness` of stops, contacts or play, of which at most one may be given.
+void read_hardness(const XmlElement& element, std::optional<double>& contact_time, std::optional<double>& stiffness);
 /// Reads the attributes `restitution` and `speeds` of a contact.
 RestitutionDescription read_restitution(const XmlElement& element);
 /// Whether a child of <robot> is flexarm's <contact>. A <contact> of other programs has neither `first` nor `second`.

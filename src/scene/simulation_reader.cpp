@@ -185,11 +185,12 @@ void read_root(const XmlElement& root, StartRequest& start) {
 
 void read_simulation(const XmlElement& unowned, SceneDescription& scene, StartRequest& start) {
   const XmlElement simulation = unowned.with_owner("simulation");
-  simulation.expect_only({"start", "massless"}, {"gravity", "integrator", "root", "initial", "load", "distributed_load",
-                                                 "motion", "effort", "probe"});
+  simulation.expect_only({"start", "massless", "contact_time"}, {"gravity", "integrator", "root", "initial", "load",
+                                                                 "distributed_load", "motion", "effort", "probe"});
   simulation.expect_at_most_one({"gravity", "integrator", "root"});
   start.clamps_all = read_choice(simulation, "start", kStarts, false) || start.clamps_all;
   scene.lock_massless = read_choice(simulation, "massless", kMassless, false) || scene.lock_massless;
+  scene.contact_time = simulation.number("contact_time", kPositive, scene.contact_time);
   const std::vector<XmlElement> entries = simulation.children();
   if (entries.size() > kMostSimulationEntries) {
     simulation.error(fmt::format("at most {} entries are allowed", kMostSimulationEntries),

@@ -63,13 +63,16 @@ bool judge_alone(const XmlElement& element, const std::string& elements) {
   return errors.empty();
 }
 
-/// Reads xyz and rpy of <origin>, <child_origin> or the like.
+}  // namespace
+
 Pose read_pose(const XmlElement& origin) {
   const Vector3 xyz = origin.vector("xyz", Vector3::Zero()), rpy = origin.vector("rpy", Vector3::Zero());
   urdf::Rotation rotation;
   rotation.setFromRPY(rpy.x(), rpy.y(), rpy.z());
   return {xyz, Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
 }
+
+namespace {
 
 Pose read_origin(const XmlElement& element) {
   const std::optional<XmlElement> origin = element.child("origin");
@@ -212,6 +215,7 @@ void read_limits(const XmlElement& joint, JointDescription& description) {
   if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
   description.limits = JointLimits{lower, upper, velocity, std::nullopt};
   if (limit->has("restitution")) description.limits->restitution = limit->number("restitution", kRestitution);
+  read_hardness(*limit, description.limits->contact_time, description.limits->stiffness);
 }
 
 /// Reads <mimic>. Exporters leave it on joints that they have made fixed, so there it only gives a warning.
@@ -348,7 +352,7 @@ void read_travel(const XmlElement& element, JointDescription& description, const
   if (const std::optional<XmlElement> friction = element.child("friction")) read_friction(*friction, description);
   const std::optional<XmlElement> limit = element.child("limit");
   if (!limit) return;
-  limit->expect_only({"lower", "upper", "effort", "velocity", "restitution"});
+  limit->expect_only({"lower", "upper", "effort", "velocity", "restitution", "contact_time", "stiffness"});
   if (limit->has("lower") || limit->has("upper")) {
     const std::optional<double> lower = limit->number("lower", positions), upper = limit->number("upper", positions);
     if (lower && upper && *lower > *upper)
@@ -358,7 +362,8 @@ void read_travel(const XmlElement& element, JointDescription& description, const
     return;
   }
   description.effort_limit = read_unlimited(*limit, "effort");
-  if (limit->has("restitution")) limit->attribute_error("restitution", "there are no stops without lower and upper");
+  for (const char* attribute : {"restitution", "contact_time", "stiffness"})
+    if (limit->has(attribute)) limit->attribute_error(attribute, "there are no stops without lower and upper");
 }
 
 namespace {

@@ -71,7 +71,7 @@ constexpr Words kWords[] = {
     {"axis", "xyz", ""},
     {"mass", "value", ""},
     {"inertia", "ixx ixy ixz iyy iyz izz", ""},
-    {"limit", "lower upper effort velocity restitution", ""},
+    {"limit", "lower upper effort velocity restitution contact_time stiffness", ""},
     {"dynamics", "damping friction", ""},
     {"mimic", "joint multiplier offset", ""},
     {"safety_controller", "soft_lower_limit soft_upper_limit k_position k_velocity", ""},

@@ -63,7 +63,6 @@ Scheme make_scheme(const IntegratorDescription& integrator) {
   require(scheme.alpha >= -1.0 / 3 && scheme.alpha <= 0, "alpha must be from -1/3 to 0");
   if (integrator.interpolation) scheme.interpolation = *integrator.interpolation;
   if (integrator.weak_form) scheme.weak_form = *integrator.weak_form;
-  scheme.contact_time = kContactSteps * integrator.step;
   const double rho = integrator.rho_infinity.value_or(kDefaultRho);
   require(rho >= 0 && rho <= 1, "rho_infinity must be from 0 to 1");
   const bool may_dissipate = scheme.dissipation.any();

@@ -12,9 +12,6 @@ namespace flexarm {
 /// Default spectral radius at infinite frequency, for the dissipative schemes.
 constexpr double kDefaultRho = 0.8;
 
-/// Duration of a contact with a stop, in steps.
-constexpr double kContactSteps = 10;
-
 /// Options of <integrator> that only some schemes have.
 struct SchemeOptions {
   bool beta = false, gamma = false, alpha = false, rho_infinity = false;
@@ -31,12 +28,9 @@ constexpr int kCompositionSteps = 5;
 struct Scheme : TimeRule {
   std::string_view name, description;
   bool conserves_energy = false, conserves_momenta = false;
-  int order = 2;                    ///< order of accuracy in time
-  bool is_composition = false;      ///< fourth order by sub-steps of a symmetric second-order scheme
-  bool heeds_slide_schemes = true;  ///< use the schemes that sliders name; false: SM-EM for all sliders
-  /// Duration of a contact with a stop [s]. Long enough to be resolved by the scene's steps, short enough to be
-  /// invisible.
-  double contact_time = kContactSteps * IntegratorDescription().step;
+  int order = 2;                               ///< order of accuracy in time
+  bool is_composition = false;                 ///< fourth order by sub-steps of a symmetric second-order scheme
+  bool heeds_slide_schemes = true;             ///< use the schemes that sliders name; false: SM-EM for all sliders
   double blur = IntegratorDescription().step;  ///< of touches, see CoordinateStep::blur [s]
   bool may_be_planar = true;                   ///< steps may be taken in a plane; false: always three-dimensional
   SchemeOptions options;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "analysis/descent.h"
-#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -86,13 +85,13 @@ std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& 
   return lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
 }
 
-std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
+std::vector<std::string> doubts_about_equilibrium(const Model& model, const State& equilibrium,
                                                   const StaticResult& result, const std::string& consequence) {
   std::vector<std::string> doubts;
   if (!result.falling_link.empty())
     doubts.push_back(fmt::format("the equilibrium to which the loads lead is not stable: link '{}' {}",
                                  result.falling_link, consequence));
-  const JointHold hold = joint_hold(model, contact_time, equilibrium);
+  const JointHold hold = joint_hold(model, equilibrium);
   std::vector<std::string> free;
   for (const std::size_t coordinate : hold.free) free.push_back(model.coordinates[coordinate].name);
   if (!free.empty())
@@ -115,8 +114,7 @@ std::vector<std::string> doubts_about_equilibrium(const Model& model, double con
 
 std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,
                                                   const std::string& consequence) {
-  const double contact_time = scheme_of(simulation).contact_time;
-  return doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence);
+  return doubts_about_equilibrium(model_of(simulation), state_of(simulation), result, consequence);
 }
 
 }  // namespace flexarm

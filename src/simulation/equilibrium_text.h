@@ -27,7 +27,7 @@ std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& 
 
 /// Says whether an equilibrium is unstable, not the only one, or known to a few digits only. Empty if none of these
 /// holds. `consequence`: words for what happens to the link that falls.
-std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
+std::vector<std::string> doubts_about_equilibrium(const Model& model, const State& equilibrium,
                                                   const StaticResult& result, const std::string& consequence);
 /// The same for a simulation that is in that equilibrium.
 std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,

@@ -164,6 +164,8 @@ class SceneParts {
   void add(const scene::JointLimits& limits) {
     all("lower", limits.lower, "upper", limits.upper);
     add_given("restitution", limits.restitution);
+    add_given("contact_time", limits.contact_time);
+    add_given("stiffness", limits.stiffness);
   }
   void add(const scene::Mimic& mimic) {
     all("joint", mimic.joint, "multiplier", mimic.multiplier, "offset", mimic.offset);
@@ -261,13 +263,15 @@ class SceneParts {
   void add(const scene::ContactDescription& contact) {
     all("first", contact.first, "second", contact.second, "stiffness", contact.stiffness, "restitution",
         contact.restitution, "friction", contact.friction, "spinning", contact.spinning, "rolling", contact.rolling);
+    add_given("contact_time", contact.contact_time);
   }
   void add(const scene::SurfaceHints& hints) { all("friction", hints.friction, "stiffness", hints.stiffness); }
   void add(const scene::ClearanceDescription& clearance) {
-    const auto& [joint, closes_loop, radius, length, width, journal, stiffness, restitution, friction, location] =
-        clearance;
+    const auto& [joint, closes_loop, radius, length, width, journal, stiffness, contact_time, restitution, friction,
+                 location] = clearance;
     all("joint", joint, "closes_loop", closes_loop, "radius", radius, "length", length, "width", width, "journal",
         journal, "stiffness", stiffness, "restitution", restitution, "friction", friction);
+    add_given("contact_time", contact_time);
   }
   void add(const scene::BoxShape& box) { all("size", box.size); }
   void add(const scene::CylinderShape& cylinder) { all("radius", cylinder.radius, "length", cylinder.length); }
@@ -357,10 +361,10 @@ class Identity {
 }  // namespace
 
 SceneIdentity identity_of(const scene::SceneDescription& scene, const Scheme& scheme) {
-  const auto& [name, file, root, links, joints, loop_joints, cylinders, springs, drives, servos, gravity, integrator,
-               integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, force_elements, grounds, contacts, no_contacts, surfaces, clearances, lock_massless,
-               starts_in_equilibrium, equilibrium_location, parameters] = scene;
+  const auto& [name, file, root, links, joints, loop_joints, cylinders, springs, drives, servos, gravity, contact_time,
+               integrator, integrator_location, initial_joints, initial_links, loads, distributed_loads, motions,
+               efforts, probes, sensors, force_elements, grounds, contacts, no_contacts, surfaces, clearances,
+               lock_massless, starts_in_equilibrium, equilibrium_location, parameters] = scene;
   Identity identity;
   identity.parameters(parameters);
   identity.integrator(integrator.step, scheme);
@@ -372,6 +376,7 @@ SceneIdentity identity_of(const scene::SceneDescription& scene, const Scheme& sc
   identity.part("drive", drives);
   identity.part("servo", servos);
   identity.part("gravity", gravity);
+  if (contact_time != scene::SceneDescription().contact_time) identity.part("contact_time", contact_time);
   identity.line("initial", "root", root, "joint", initial_joints, "link", initial_links, "lock_massless",
                 lock_massless);
   identity.part("load", loads);

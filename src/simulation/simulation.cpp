@@ -413,8 +413,7 @@ StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
   if (count < 1) throw std::invalid_argument("the number of modes must be >= 1");
-  std::vector<Mode> modes = flexarm::natural_modes(implementation_->model, implementation_->state, count,
-                                                   implementation_->scheme.contact_time);
+  std::vector<Mode> modes = flexarm::natural_modes(implementation_->model, implementation_->state, count);
   for (Mode& mode : modes) mode.coordinate_motion.resize(coordinate_names().size());  // without hidden ones
   return modes;
 }

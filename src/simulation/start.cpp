@@ -163,7 +163,7 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
     std::vector<Mode> modes;
     // A mechanism without an equilibrium may have no modes either, if its numbers are out of all bounds.
     try {
-      if (is_quick) modes = natural_modes(model, state, 1 + coordinates, scheme.contact_time);
+      if (is_quick) modes = natural_modes(model, state, 1 + coordinates);
     } catch (const std::runtime_error&) {
     }
     const std::string lack = lack_of_equilibrium(scene, model, result, modes);
@@ -175,9 +175,8 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
                                   "the simulation is to start in its equilibrium: " + lack};
     throw ModelError(error.text());
   }
-  for (const std::string& doubt :
-       doubts_about_equilibrium(model, scheme.contact_time, state, result,
-                                "falls from it; the simulation starts in the equilibrium in which it comes to rest"))
+  for (const std::string& doubt : doubts_about_equilibrium(
+           model, state, result, "falls from it; the simulation starts in the equilibrium in which it comes to rest"))
     warnings.push_back(warning({scene.file}, "start in equilibrium", doubt));
 }
 

@@ -126,7 +126,7 @@ TEST(Statics, PendulumsHang) {
 TEST(Stability, UprightPendulum) {
   SceneBuilder b = pendulum(1, {-9.81, 0, 0});
   const Simulation simulation(b.scene);
-  const Stability up = judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
+  const Stability up = judge_stability(model_of(simulation), state_of(simulation));
   EXPECT_FALSE(up.is_stable());
   EXPECT_EQ(up.motion.link, "rod0");
   const double moved = 0.5 / model_of(simulation).length_scale,
@@ -136,7 +136,7 @@ TEST(Stability, UprightPendulum) {
 
 Stability stability_at_start(const SceneBuilder& b) {
   const Simulation simulation(b.scene);
-  return judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
+  return judge_stability(model_of(simulation), state_of(simulation));
 }
 
 // Chains of thousands of joints are judged without a dense matrix: a hanging chain, an upright one, and hanging rods
@@ -179,7 +179,7 @@ SceneBuilder flexible_parallelogram(double angle, JointKind left, const std::set
 
 std::string dead_link(const SceneBuilder& b) {
   const Simulation simulation(b.scene);
-  return link_at_dead_point(model_of(simulation), state_of(simulation), 0.01);
+  return link_at_dead_point(model_of(simulation), state_of(simulation));
 }
 
 // A flat parallelogram may open as a parallelogram or as a crossed one, with or without stretching. If crank and
@@ -307,7 +307,7 @@ SceneBuilder pan_lift_elbow(double tilt, bool is_flexible) {
 }
 
 JointHold hold_of(const Simulation& simulation) {
-  return joint_hold(model_of(simulation), 0.01, state_of(simulation));
+  return joint_hold(model_of(simulation), state_of(simulation));
 }
 
 // The lowest equilibrium: column, upper arm and forearm are in the plane in which the pan axis is tilted, and the arms
@@ -358,7 +358,7 @@ TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
     const Simulation simulation(b.scene);
     StepSettings settings;
     settings.tolerance = 1e-12;
-    JointPotentials potentials(model_of(simulation), exact_equilibrium(0.01), settings);
+    JointPotentials potentials(model_of(simulation), exact_equilibrium(), settings);
     StepResult result;
     JointPotential at;
     at.state = state_of(simulation);
@@ -387,7 +387,7 @@ TEST(JointPotentials, CurvatureOfALoopIsTheDerivativeOfTheForce) {
   const Simulation simulation(b.scene);
   StepSettings settings;
   settings.tolerance = 1e-12;
-  JointPotentials potentials(model_of(simulation), exact_equilibrium(0.01), settings);
+  JointPotentials potentials(model_of(simulation), exact_equilibrium(), settings);
   StepResult result;
   JointPotential at, ahead, behind;
   at.state = state_of(simulation);

@@ -26,6 +26,13 @@ StepSettings newton_settings(double step, double tolerance, int max_iterations, 
   return settings;
 }
 
+/// Stops from 0.6 to 3 that yield by at most 2, of a coordinate that moves this inertia.
+LimitStop stop(double inertia) {
+  LimitStop out{0.6, 3.0, 0, 2.0, 2.0};
+  out.carry(inertia);
+  return out;
+}
+
 /// The mechanism without friction: friction changes over increments that are too small for the differences.
 Model smooth_model() {
   Model model = build_model(every_joint_scene(false));
@@ -52,7 +59,7 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
   Model model = smooth_model();
   for (Coordinate& coordinate : model.coordinates)
     // The slider's travel is around zero, inside the stop
-    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0, 2.0, 2.0};
+    if (coordinate.limit) coordinate.limit = stop(8.0);
   RandomSource random(5);  // a seed for which no slider is near the end of an element, where forces have a kink
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
@@ -101,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(AllSchemes, ConsistentTangent, ::testing::ValuesIn(with
 TEST(StepSystem, TangentOfStatics) {
   Model model = build_model(every_joint_scene(false));
   for (Coordinate& coordinate : model.coordinates)
-    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 2e-4, 2.0, 2.0};
+    if (coordinate.limit) coordinate.limit = stop(2e-4);
   RandomSource random(5);
   const State state = random_state(model, random, 0.1);
   StepSystem system(model, statics_of(schemes().front()), BackendChoice::Matrix);

@@ -11,14 +11,12 @@ namespace {
 
 using namespace test;
 
-double passive_slope_by_difference(const Coordinate& coordinate, const StopPenalty& penalty,
-                                   const CoordinateStep& change, double scale) {
-  return slope_by_difference(
-      [&](const CoordinateStep& moved) { return passive_effort(coordinate, penalty, moved).effort; }, change, scale);
+double passive_slope_by_difference(const Coordinate& coordinate, const CoordinateStep& change, double scale) {
+  return slope_by_difference([&](const CoordinateStep& moved) { return passive_effort(coordinate, moved).effort; },
+                             change, scale);
 }
 
 TEST(PassiveEffort, DampingAndFriction) {
-  const StopPenalty penalty;
   Coordinate coordinate;
   coordinate.damping = 0.7;
   coordinate.friction = 1.3;
@@ -29,12 +27,12 @@ TEST(PassiveEffort, DampingAndFriction) {
       change.increment = rate * h;
       change.gamma = gamma;
       change.begin_rate = gamma == 1.0 ? 123.0 : rate;  // has no influence on the mean rate
-      const PassiveEffort effort = passive_effort(coordinate, penalty, change);
+      const PassiveEffort effort = passive_effort(coordinate, change);
       EXPECT_NEAR(effort.effort, -0.7 * rate - 1.3 * std::tanh(rate / kFrictionSpeed), 1e-12);
       EXPECT_GE(effort.dissipated, 0);
       EXPECT_NEAR(effort.dissipated, -effort.effort * change.increment, 1e-15);
       const double scale = kFrictionSpeed * h * gamma;  // size of an increment over which friction changes
-      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, penalty, change, scale), 1e-9 / scale);
+      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, change, scale), 1e-9 / scale);
     }
 }
 
@@ -53,19 +51,18 @@ TEST(PassiveEffort, StribecksCurve) {
       change.begin_rate = gamma == 1.0 ? 123.0 : rate;
       const double rise = 1 + 0.5 * std::exp(-rate * rate / 4e-4);
       EXPECT_NEAR(friction_rise(coordinate, change).value, rise, 1e-13);
-      const PassiveEffort effort = passive_effort(coordinate, {}, change);
+      const PassiveEffort effort = passive_effort(coordinate, change);
       EXPECT_NEAR(effort.effort, -1.3 * rise * std::tanh(rate / kFrictionSpeed), 1e-12);
       EXPECT_GE(effort.dissipated, 0);
       const double scale = kFrictionSpeed * h * gamma;
-      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, {}, change, scale), 1e-9 / scale);
+      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, change, scale), 1e-9 / scale);
     }
 }
 
 TEST(PassiveEffort, NoneInStatics) {
-  const StopPenalty penalty;
   Coordinate coordinate;
   coordinate.damping = coordinate.friction = 1;
-  const PassiveEffort effort = passive_effort(coordinate, penalty, step_between(0, 0, 0));
+  const PassiveEffort effort = passive_effort(coordinate, step_between(0, 0, 0));
   EXPECT_EQ(effort.effort, 0);
   EXPECT_EQ(effort.slope, 0);
   EXPECT_EQ(effort.dissipated, 0);

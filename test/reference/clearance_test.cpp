@@ -332,7 +332,8 @@ TEST(Clearance, BlockInItsGuideMovesAsPublished) {
           joint("wrist", "continuous", "rod", "slider", "<origin xyz=\"0.306 0 0\"/><axis xyz=\"0 0 1\"/>") +
           joint("guide", "prismatic", "world", "slider",
                 "<axis xyz=\"1 0 0\"/>" + kLimit +
-                    "<clearance radius=\"1e-3\" length=\"0.1\" width=\"0.05\" restitution=\"0.4\"/>",
+                    "<clearance radius=\"1e-3\" length=\"0.1\" width=\"0.05\" restitution=\"0.4\" "
+                    "contact_time=\"1e-4\"/>",
                 "loop_joint"),
       "<initial joint=\"crank\" velocity=\"150\"/><initial joint=\"rod\" velocity=\"-225\"/>"
       "<initial joint=\"wrist\" velocity=\"75\"/>",

@@ -72,7 +72,8 @@ TEST(Contact, FastHitsGiveBackLess) {
   constexpr int kHits = 6;
   Simulation simulation =
       simulation_of(ball("ball", 2, 0.1) + floating("ball") + kFloor +
-                        "<contact first=\"ball\" second=\"floor\" restitution=\"0.95 0.65\" speeds=\"0 3\"/>",
+                        "<contact first=\"ball\" second=\"floor\" restitution=\"0.95 0.65\" speeds=\"0 3\" "
+                        "contact_time=\"1e-3\"/>",
                     start("ball", {0, 0, 0.1 + 1e-9}, {0, 0, kBegin}), kStep, {0, 0, -kGravity});
   const double begin = simulation.energies().total();
   const std::vector<double> expected = flights(kBegin, kGravity, kHits);

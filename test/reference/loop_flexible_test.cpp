@@ -94,6 +94,7 @@ TEST(FlexibleLoop, EffortFrictionAndStopsActOnTheClosingJoint) {
   foot.damping = 0.2;
   foot.friction = 0.1;
   foot.limits = scene::JointLimits{-0.2, 0.2};
+  b.scene.contact_time = 10 * 0.01;
   b.scene.efforts.push_back({"foot", TimeFunction(3), {}});
   Simulation simulation(b.scene, options("em", 0.01, 1e-11));
   InvariantDrift drift(simulation);

@@ -24,6 +24,17 @@ std::string mimic(const std::string& name) {
 
 }  // namespace
 
+TEST(JointErrors, HardnessOfStops) {
+  const ReadResult read_so = read(good_scene_with(R"( velocity="4")", R"( velocity="4" contact_time="0.002")"));
+  ASSERT_TRUE(read_so.scene);
+  EXPECT_EQ(read_so.scene->joints[0].limits->contact_time, 0.002);
+  EXPECT_FALSE(read_so.scene->joints[0].limits->stiffness);
+  EXPECT_EQ(read(good_scene_with(R"( velocity="4")", R"( stiffness="9")")).scene->joints[0].limits->stiffness, 9);
+  expect_error(R"( velocity="4")", R"( velocity="4" contact_time="0.002" stiffness="9")", 10,
+               "the stiffness determines it; leave one of them out");
+  expect_error(R"( velocity="4")", R"( velocity="4" contact_time="0")", 10, "contact_time must be > 0, got '0'");
+}
+
 TEST(JointErrors, Numbers) {
   expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0 0"/>)", 9,
                "<axis> of joint 'shoulder': xyz must not be zero");

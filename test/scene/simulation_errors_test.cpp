@@ -17,7 +17,8 @@ TEST(SimulationErrors, Structure) {
   expect_entry_error(R"(<gravity xyz="0 0 0"/>)", "at most one <gravity>");
   expect_error("</simulation>", "</simulation><simulation/>", 68, "at most one <simulation>");
   expect_error("<simulation>", R"(<simulation speed="1">)", 58,
-               "unknown attribute, expected start, massless, got 'speed'");
+               "unknown attribute, expected start, massless, contact_time, got 'speed'");
+  expect_error("<simulation>", R"(<simulation contact_time="0">)", 58, "contact_time must be > 0, got '0'");
   expect_error(R"(xyz="0 0 -1.62")", R"(g="-1.62" xyz="0 0 -1.62")", 59, "unknown attribute, expected xyz, got 'g'");
   expect_error(R"( xyz="0 0 -1.62")", "", 59, "<gravity> of simulation: attribute 'xyz' is missing");
 }

@@ -12,6 +12,7 @@ inline SceneBuilder everything_scene() {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};
   b.scene.integrator.step = 0.002;
+  b.scene.contact_time = 0.02;
   const scene::DirectSection s{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01};
   const Matrix3 inertia = Vector3(0.1, 0.12, 0.15).asDiagonal();
   for (int order = 1; order <= 4; ++order) {

@@ -124,6 +124,30 @@ TEST(SensitivityEvents, FrictionThatBringsToRest) {
   }
 }
 
+// A cart starts at once with 0.6 m/s. A block that slides on it with dry friction F stays behind by v^2 m / 2F.
+TEST(SensitivityEvents, FrictionBehindAKinkOfAMotion) {
+  const Scene scene{R"(<robot name="cart"> <parameter name="friction" value="3"/> <link name="world"/>
+    <joint name="bed" type="prismatic"> <parent link="cart"/> <child link="block"/> <axis xyz="1 0 0"/>
+      <limit lower="-9" upper="9" effort="0" velocity="0"/> <dynamics friction="${friction}"/> <friction law="coulomb"/>
+    </joint>
+    <joint name="rail" type="prismatic"> <parent link="world"/> <child link="cart"/> <axis xyz="1 0 0"/>
+      <limit lower="-9" upper="9" effort="0" velocity="0"/> </joint>
+    <link name="cart"> <inertial> <mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <link name="block"> <inertial> <mass value="2"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <simulation> <motion joint="rail" position="0:0 0.1:0 1.1:0.6"/> <integrator step="1e-3"/> </simulation> </robot>)"};
+  Simulation simulation = scene.simulation();
+  Sensitivities sensitivities(simulation, scene.request({"friction"}));
+  for (int n = 0; n < 800; ++n) ASSERT_TRUE(sensitivities.step().converged);
+  EXPECT_EQ(sensitivities.lost(), "");
+  const std::vector<std::string>& names = simulation.coordinate_names();
+  const auto bed = std::find(names.begin(), names.end(), "bed") - names.begin();
+  EXPECT_NEAR(simulation.position(static_cast<std::size_t>(bed)), -0.12, 2e-6);
+  // d/dF (-v^2 m / 2F) = 0.04; the coordinate comes to rest within a step, in which it moves by F h^2 / m.
+  EXPECT_NEAR(sensitivities.positions()(bed, 0), 0.04, 2 * 1.5 * 1e-6 + 1e-5);
+}
+
 // A push of 3 N m acts back all the time, so that the rod reverses without sticking.
 TEST(SensitivityEvents, ReversalWithoutRest) {
   const double braking = 5 / kInertia, back = 1 / kInertia, speed = 0.72, until = 0.5, turn = speed / braking;
@@ -176,12 +200,19 @@ Hit hit(double ratio) {
   return {low, x(low), -v(low)};
 }
 
+/// The scene with hits that last ten steps.
+std::string with_hits_of_ten_steps(std::string text, double step) {
+  const std::string tag = "<simulation";
+  text.insert(text.find(tag) + tag.size(), fmt::format(" contact_time=\"{}\"", 10 * step));
+  return text;
+}
+
 // Without gravity. The run's hit has an error of a few hundredths, but the motion after it is linear in the speed.
 TEST(SensitivityEvents, StopTouchedAndLeft) {
   const double upper = 0.1234, until = 0.4;
   for (const double step : {4e-3, 1e-3, 1e-4}) {
-    const std::string text =
-        rod_with_stop(upper, "0 0 0", fmt::format("scheme=\"em\" step=\"{}\" tolerance=\"1e-10\"", step));
+    const std::string text = with_hits_of_ten_steps(
+        rod_with_stop(upper, "0 0 0", fmt::format("scheme=\"em\" step=\"{}\" tolerance=\"1e-10\"", step)), step);
     const Derivative found = derivative_by("speed", text, until);
     const double frequency = kPi / (10 * step);
     const Hit law = hit(0.497239);
@@ -227,8 +258,8 @@ TEST(SensitivityEvents, StopsOfOtherSchemes) {
 TEST(SensitivityEvents, StopAtTheEndOfAStep) {
   const int steps = 10;
   const double half = 0.5 * 0.7 * 0.01;  // a free rod turns by 2 atan(half) in a step
-  const std::string text =
-      rod_with_stop(2 * steps * std::atan(half), "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\"");
+  const std::string text = with_hits_of_ten_steps(
+      rod_with_stop(2 * steps * std::atan(half), "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\""), 0.01);
   const Derivative before = derivative_by("speed", text, 0.09), behind = derivative_by("speed", text, 0.4);
   EXPECT_NEAR(before.position, 0.01 * (steps - 1) / (1 + half * half), 1e-6 * 0.09);
   EXPECT_EQ(behind.lost, "");
@@ -272,8 +303,9 @@ TEST(SensitivityEvents, GrazedStopIsDoubtful) {
 
 // Two stops are touched at the same instant; the order of the events depends on the parameter.
 TEST(SensitivityEvents, EventsAtTheSameInstantAreDoubtful) {
-  std::string text = rod_with_stop(0.1234, "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\"");
-  const auto begin = text.find("<joint"), end = text.find("<simulation>");
+  std::string text =
+      with_hits_of_ten_steps(rod_with_stop(0.1234, "0 0 0", "scheme=\"em\" step=\"0.01\" tolerance=\"1e-10\""), 0.01);
+  const auto begin = text.find("<joint"), end = text.find("<simulation");
   std::string other = text.substr(begin, end - begin);
   for (const auto& [name, renamed] : {std::pair("\"hinge\"", "\"other\""), std::pair("\"rod\"", "\"second\"")})
     for (auto at = other.find(name); at != std::string::npos; at = other.find(name))

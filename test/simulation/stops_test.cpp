@@ -211,6 +211,48 @@ TEST(Stop, HoldsAnArmThatHasGrown) {
 }
 
 // Two limits at one position hold the joint there.
+// How deep a hit goes, and how long it lasts, belongs to the scene: half the step changes neither.
+TEST(Stop, DependsOnNoStep) {
+  for (const double contact_time : {0.01, 0.04}) {
+    SceneBuilder b = carriage(0.5);
+    b.scene.contact_time = contact_time;
+    b.scene.joints[0].limits->restitution = 1;
+    for (const double step : {1e-3, 2.5e-4, 1e-4}) {
+      SimulationOptions finer = options("em");
+      finer.step = step;
+      Simulation simulation(b.scene, finer);
+      double deepest = 0, begin = 0, end = 0;
+      while (simulation.time() < 1.5) {
+        ASSERT_TRUE(simulation.step().converged);
+        deepest = std::max(deepest, simulation.position(0) - kLimit);
+        if (simulation.position(0) > kLimit) end = simulation.time(), begin = begin > 0 ? begin : end;
+      }
+      // A linear oscillator: depth v T / pi; hardening and midpoint rule change it by less than (pi h / T)^2 / 8 + 5
+      // (p/d)^2 / 2.
+      const double depth = 0.5 * contact_time / 3.14159265358979323846;
+      EXPECT_NEAR(deepest, depth,
+                  (0.125 * std::pow(3.15 * step / contact_time, 2) + 2.5 * std::pow(depth / 0.1, 2)) * depth)
+          << step;
+      EXPECT_NEAR(end - begin, contact_time, 2 * step + 0.05 * contact_time) << step;
+    }
+  }
+}
+
+// A declared stiffness is the ratio of a load to the depth where the stop yields little.
+TEST(Stop, HasTheDeclaredStiffness) {
+  for (const std::string scheme : {"em", "newmark", "rk4"}) {
+    SceneBuilder b = carriage(0);
+    b.scene.joints[0].limits->stiffness = 4e5;
+    b.scene.joints[0].damping = 2 * std::sqrt(2 * 4e5);
+    start(b, "rail", kLimit, 0);
+    b.scene.initial_joints.erase(b.scene.initial_joints.begin());
+    Simulation simulation(b.scene, options(scheme));
+    simulation.command_effort(0, 40);
+    for (int n = 0; n < 300; ++n) ASSERT_TRUE(simulation.step().converged);
+    EXPECT_NEAR(simulation.position(0) - kLimit, 1e-4, 1e-4 * 8 * 1e-6 + 1e-12) << scheme;
+  }
+}
+
 TEST(Stop, OfNoRange) {
   SceneBuilder b = carriage(1);
   b.scene.joints[0].limits = scene::JointLimits{0, 0};

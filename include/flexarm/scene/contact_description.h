@@ -36,7 +36,8 @@ struct ContactPair {
   SourceLocation location = {};
 };
 struct ContactDescription : ContactPair {
-  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: from the moved masses and the step
+  std::optional<double> stiffness = {};     ///< of a contact point [N/m]; empty: from moved masses and contact time
+  std::optional<double> contact_time = {};  ///< as JointLimits::contact_time
   RestitutionDescription restitution = {};
   std::optional<double> friction = {};  ///< Coulomb coefficient; empty: from the surfaces of the links, else 0
   /// Torsional and rolling friction: the resisting moment about the normal, and across it, is at most this length times

@@ -81,6 +81,9 @@ struct JointLimits {
   double lower, upper;                     ///< position [rad or m]
   double velocity = 0;                     ///< stored but not enforced
   std::optional<double> restitution = {};  ///< coefficient of the stops, from 0.05 to 1; empty: 0.3
+  /// That an undamped hit lasts [s]; empty: SceneDescription::contact_time.
+  std::optional<double> contact_time = {};
+  std::optional<double> stiffness = {};  ///< of the stops [N/m or N m/rad]; instead of a contact time
 };
 
 /// The coordinate follows another one: multiplier * (coordinate of `joint`) + offset.
@@ -171,11 +174,12 @@ struct CylinderDescription {
 struct ClearanceDescription {
   JointDescription joint;  ///< the joint without play: revolute, continuous, prismatic or spherical
   bool closes_loop = false;
-  double radius = 0;                     ///< the play: gap between the hole and its pin, ball or block, per side [m]
-  std::optional<double> length = {};     ///< of the pin or block along the axis [m]; empty: see docs/scene/play.md
-  std::optional<double> width = {};      ///< of the block's square section [m]; empty: `length`
-  double journal = 0;                    ///< radius of the pin or ball [m]; required with friction
-  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: from the moved masses and the step
+  double radius = 0;                        ///< the play: gap between the hole and its pin, ball or block, per side [m]
+  std::optional<double> length = {};        ///< of the pin or block along the axis [m]; empty: see docs/scene/play.md
+  std::optional<double> width = {};         ///< of the block's square section [m]; empty: `length`
+  double journal = 0;                       ///< radius of the pin or ball [m]; required with friction
+  std::optional<double> stiffness = {};     ///< of a contact point [N/m]; empty: from moved masses and contact time
+  std::optional<double> contact_time = {};  ///< as JointLimits::contact_time
   RestitutionDescription restitution = {};
   double friction = 0;           ///< Coulomb coefficient
   SourceLocation location = {};  ///< of the element <clearance>
@@ -357,6 +361,8 @@ struct SceneDescription {
   std::vector<DriveDescription> drives;
   std::vector<ServoDescription> servos;
   Vector3 gravity = Vector3(0, 0, -9.81);  ///< [m/s^2]
+  /// That undamped hits on stops, of contacts and in joints with play last, if these say nothing else [s].
+  double contact_time = 0.01;
   IntegratorDescription integrator;
   SourceLocation integrator_location;  ///< line 0: the scene has no <integrator>
   std::vector<InitialJoint> initial_joints;
