@@ -110,14 +110,10 @@ std::vector<ProbePoint> place_probes(const ScenePlan& plan, const Model& model) 
 
 namespace {
 
-using scene::SensorKind;
+using scene::SensedPlace;
 
-bool measures_reaction(SensorKind kind) {
-  return kind == SensorKind::Wrench || kind == SensorKind::Reaction;
-}
-
-bool measures_section(SensorKind kind) {
-  return kind == SensorKind::SectionForce || kind == SensorKind::Strain;
+SensedPlace place_of(const scene::Sensor& sensor) {
+  return scene::traits_of(sensor.kind).place;
 }
 
 /// The joint whose reaction a sensor measures: the one that carries the link, or the loop joint that the sensor names.
@@ -173,7 +169,7 @@ int index_of(const ReactionPlace& place, Model& model) {
 
 bool measures_reaction(const scene::SceneDescription& scene, const std::string& link) {
   return std::any_of(scene.sensors.begin(), scene.sensors.end(), [&](const scene::Sensor& sensor) {
-    return sensor.link == link && sensor.joint.empty() && measures_reaction(sensor.kind);
+    return sensor.link == link && sensor.joint.empty() && place_of(sensor) == SensedPlace::Joint;
   });
 }
 
@@ -181,14 +177,14 @@ void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& mod
   for (const scene::Sensor& sensor : plan.scene.sensors) {
     const std::string where = at(sensor.location, "<sensor> '" + sensor.name + "'");
     const int link = plan.links[sensor.link];
-    if (measures_section(sensor.kind) && !plan.meshes[link])
+    if (place_of(sensor) == SensedPlace::Section && !plan.meshes[link])
       throw ModelError(where + "link '" + sensor.link + "' has no <beam>");
-    if (measures_reaction(sensor.kind) && sensor.joint.empty() && link == plan.tree.root)
+    if (place_of(sensor) == SensedPlace::Joint && sensor.joint.empty() && link == plan.tree.root)
       throw ModelError(where + "no joint carries the root link '" + sensor.link + "'");
     SensorPlace place{probe_point(plan, model, sensor.link, sensor.at)};
-    if (measures_reaction(sensor.kind))
+    if (place_of(sensor) == SensedPlace::Joint)
       place.reaction = index_of(reaction_place(plan, sensor, model.links[link], mechanism, model), model);
-    if (sensor.kind == SensorKind::Tendon) place.force_element = tendon_of(plan.scene, sensor);
+    if (place_of(sensor) == SensedPlace::Tendon) place.force_element = tendon_of(plan.scene, sensor);
     model.sensors.push_back(place);
   }
 }
@@ -196,7 +192,7 @@ void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& mod
 void connect_contact_sensors(const scene::SceneDescription& scene, Model& model) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const scene::Sensor& sensor = scene.sensors[i];
-    if (sensor.kind != SensorKind::Contact) continue;
+    if (place_of(sensor) != SensedPlace::Touch) continue;
     const auto feels = [&](const std::string& name) {
       if (sensor.group.empty()) return name == sensor.link;
       return std::find(sensor.group.begin(), sensor.group.end(), name) != sensor.group.end();

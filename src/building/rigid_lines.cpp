@@ -151,7 +151,7 @@ void require_no_sections(const scene::SceneDescription& scene) {
   for (const scene::JointDescription& joint : scene.joints)
     if (joint.slide) require_flexible(joint.slide->location, "<slide> of joint '" + joint.name + "'", joint.parent);
   for (const scene::Sensor& sensor : scene.sensors)
-    if (sensor.kind == scene::SensorKind::SectionForce || sensor.kind == scene::SensorKind::Strain)
+    if (scene::traits_of(sensor.kind).place == scene::SensedPlace::Section)
       require_flexible(sensor.location, "<sensor> '" + sensor.name + "'", sensor.link);
 }
 

@@ -73,7 +73,7 @@ SensorMessage sensor_message(const Simulation& simulation, std::size_t index, co
                              const std::string& prefix) {
   const scene::SceneDescription& scene = simulation.scene();
   const scene::Sensor& sensor = scene.sensors[index];
-  const bool in_world = sensor.kind == SensorKind::Reaction || sensor.kind == SensorKind::Pose;
+  const bool in_world = scene::traits_of(sensor.kind).in_world;
   SensorMessage message = message_of(sensor.kind, simulation.sample(index));
   std::visit(
       [&](auto& content) {

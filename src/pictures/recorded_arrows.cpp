@@ -103,8 +103,8 @@ void RecordedArrows::find_reactions(std::size_t row, const Simulation& shown, st
   out.clear();
   for (const auto& [index, link, columns] : reactions_) {
     const scene::Sensor& sensor = shown.scene().sensors[index];
-    const Quaternion axes = sensor.kind == scene::SensorKind::Wrench ? shown.link_pose(link).orientation
-                                                                     : Quaternion::Identity();  // else the world's
+    const bool in_world = scene::traits_of(sensor.kind).in_world;
+    const Quaternion axes = in_world ? Quaternion(Quaternion::Identity()) : shown.link_pose(link).orientation;
     const auto vector = [&, &own = columns](std::size_t k) {
       return Vector3(columns_.value(row, own[k]), columns_.value(row, own[k + 1]), columns_.value(row, own[k + 2]));
     };

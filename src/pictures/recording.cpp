@@ -30,7 +30,7 @@ ResultColumns columns_of(const Simulation& simulation, const RecordingOptions& o
 }  // namespace
 
 bool measures_reaction(const scene::Sensor& sensor) {
-  return sensor.kind == scene::SensorKind::Wrench || sensor.kind == scene::SensorKind::Reaction;
+  return scene::traits_of(sensor.kind).place == scene::SensedPlace::Joint;
 }
 
 void append_line(const Simulation& simulation, const PictureLine& line, std::vector<Vector3>& scratch,

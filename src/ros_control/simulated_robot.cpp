@@ -82,7 +82,7 @@ void SimulatedRobot::register_joint(std::size_t coordinate) {
 void SimulatedRobot::register_sensors() {
   const scene::SceneDescription& scene = simulation_.scene();
   const auto is_wrench = [](scene::SensorKind kind) {
-    return kind == scene::SensorKind::Wrench || kind == scene::SensorKind::Reaction;
+    return scene::traits_of(kind).place == scene::SensedPlace::Joint;
   };
   for (std::size_t index = 0; index < scene.sensors.size(); ++index)
     if (scene.sensors[index].kind == scene::SensorKind::Imu || is_wrench(scene.sensors[index].kind))
@@ -91,7 +91,7 @@ void SimulatedRobot::register_sensors() {
     const scene::Sensor& sensor = scene.sensors[entry.index];
     double* const values = entry.values.data();
     if (is_wrench(sensor.kind)) {
-      const bool in_world = sensor.kind == scene::SensorKind::Reaction;
+      const bool in_world = scene::traits_of(sensor.kind).in_world;
       wrenches_.registerHandle({sensor.name, in_world ? scene.root_link : sensor.link, values, values + 3});
     } else {
       hardware_interface::ImuSensorHandle::Data data;  // covariances are unknown, and orientation is not measured

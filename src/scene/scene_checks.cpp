@@ -112,8 +112,8 @@ class ReferenceCheck {
     check_link(sensor.link, sensor.location, element.c_str());
     const auto link = links_.find(sensor.link);
     if (link == links_.end() || unreadable_.count(sensor.link) > 0) return;
-    const bool needs_beam = sensor.kind == SensorKind::SectionForce || sensor.kind == SensorKind::Strain;
-    const bool needs_joint = sensor.kind == SensorKind::Wrench || sensor.kind == SensorKind::Reaction;
+    const SensedPlace place = traits_of(sensor.kind).place;
+    const bool needs_beam = place == SensedPlace::Section, needs_joint = place == SensedPlace::Joint;
     if (needs_beam && !is_flexible(*link->second))
       findings_.error(sensor.location.line, element, "link must be flexible, that is have a <beam> with elements",
                       quoted(sensor.link));
@@ -136,7 +136,7 @@ class ReferenceCheck {
   }
 
   void check_group(const Sensor& sensor, const std::string& element) const {
-    if (!sensor.group.empty() && sensor.kind != SensorKind::Contact)
+    if (!sensor.group.empty() && traits_of(sensor.kind).place != SensedPlace::Touch)
       findings_.error(sensor.location.line, element, "group is for sensors of kind contact");
     const auto is_ground = [&](const std::string& name) {
       return std::any_of(scene_.grounds.begin(), scene_.grounds.end(),

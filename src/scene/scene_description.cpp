@@ -44,7 +44,8 @@ const std::vector<std::string>& coordinate_suffixes(const JointDescription& join
   return none;
 }
 
-const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
+const std::vector<SensorTraits>& sensor_kinds() {
+  using Place = SensedPlace;
   static const std::vector<SensorChannel> wrench = {{"fx", "N"},   {"fy", "N"},   {"fz", "N"},
                                                     {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}},
                                           strain = {{"strain", "1"}}, tendon = {{"length", "m"}, {"tension", "N"}},
@@ -52,26 +53,21 @@ const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
                                                  {"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}},
                                           pose = {{"x", "m"},  {"y", "m"},  {"z", "m"}, {"qx", "1"},
                                                   {"qy", "1"}, {"qz", "1"}, {"qw", "1"}};
-  switch (kind) {
-    case SensorKind::Wrench:
-    case SensorKind::Reaction:
-    case SensorKind::SectionForce:
-    case SensorKind::Contact:
-      return wrench;
-    case SensorKind::Strain:
-      return strain;
-    case SensorKind::Imu:
-      return imu;
-    case SensorKind::Pose:
-      return pose;
-    case SensorKind::Tendon:
-      return tendon;
-  }
-  return wrench;
+  static const std::vector<SensorTraits> kinds = {
+      {"wrench", SensorKind::Wrench, Place::Joint, false, wrench, 6},
+      {"reaction", SensorKind::Reaction, Place::Joint, true, wrench, 6},
+      {"section_force", SensorKind::SectionForce, Place::Section, false, wrench, 6},
+      {"strain", SensorKind::Strain, Place::Section, false, strain, 1},
+      {"imu", SensorKind::Imu, Place::Point, false, imu, 6},
+      {"pose", SensorKind::Pose, Place::Point, true, pose, 6},
+      {"contact", SensorKind::Contact, Place::Touch, false, wrench, 6},
+      {"tendon", SensorKind::Tendon, Place::Tendon, false, tendon, 2}};
+  return kinds;
 }
 
-std::size_t sensor_error_count(SensorKind kind) {
-  return kind == SensorKind::Pose ? 6 : sensor_channels(kind).size();
+const SensorTraits& traits_of(SensorKind kind) {
+  return *std::find_if(sensor_kinds().begin(), sensor_kinds().end(),
+                       [&](const SensorTraits& traits) { return traits.kind == kind; });
 }
 
 std::size_t find_force_element(const SceneDescription& scene, const std::string& kind, const std::string& name) {

@@ -11,10 +11,6 @@
 namespace flexarm::scene {
 namespace {
 
-constexpr Choice<SensorKind> kKinds[] = {
-    {"wrench", SensorKind::Wrench},   {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
-    {"strain", SensorKind::Strain},   {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose},
-    {"contact", SensorKind::Contact}, {"tendon", SensorKind::Tendon}};
 constexpr std::size_t kMostErrors = 6;
 /// The upper bound lets the samples of a run of years be counted.
 constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
@@ -46,8 +42,8 @@ Sensor read_sensor(const XmlElement& unnamed) {
   out.location = unnamed.location();
   const XmlElement sensor = unnamed.with_name(out.name);
   sensor.expect_only({"name", "kind", "link", "joint", "group", "tendon", "at", "rate", "noise", "bias", "seed"});
-  const std::optional<SensorKind> kind = read_choice(sensor, "kind", kKinds);
-  if (kind == SensorKind::Tendon) {
+  const SensorTraits* kind = read_row(sensor, "kind", sensor_kinds());
+  if (kind && kind->place == SensedPlace::Tendon) {
     out.tendon = sensor.name("tendon").value_or("");
     for (const char* attribute : {"link", "joint", "group", "at"})
       if (sensor.has(attribute)) sensor.attribute_error(attribute, "a sensor of a tendon has no such attribute");
@@ -61,9 +57,9 @@ Sensor read_sensor(const XmlElement& unnamed) {
   if (sensor.has("rate")) out.rate = sensor.number("rate", kRate).value_or(0);
   if (sensor.has("seed")) out.seed = sensor.integer("seed", 0, std::numeric_limits<int>::max()).value_or(0);
   if (!kind) return out;
-  out.kind = *kind;
-  out.noise = read_errors(sensor, "noise", sensor_error_count(*kind));
-  out.bias = read_errors(sensor, "bias", sensor_error_count(*kind));
+  out.kind = kind->kind;
+  out.noise = read_errors(sensor, "noise", kind->errors);
+  out.bias = read_errors(sensor, "bias", kind->errors);
   if (std::any_of(out.noise.begin(), out.noise.end(), [](double deviation) { return deviation < 0; }))
     sensor.attribute_error("noise", "noise is a standard deviation, >= 0");
   return out;
@@ -71,7 +67,7 @@ Sensor read_sensor(const XmlElement& unnamed) {
 
 void connect_tendon_sensors(SceneDescription& scene, Findings& findings) {
   for (Sensor& sensor : scene.sensors) {
-    if (sensor.kind != SensorKind::Tendon || sensor.tendon.empty()) continue;
+    if (traits_of(sensor.kind).place != SensedPlace::Tendon || sensor.tendon.empty()) continue;
     const std::size_t tendon = find_force_element(scene, "tendon", sensor.tendon);
     if (tendon == scene.force_elements.size())
       findings.error(sensor.location.line, "<sensor> " + quoted(sensor.name),

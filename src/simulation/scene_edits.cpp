@@ -172,7 +172,7 @@ void take_away(SceneDescription& scene, const std::string& link) {
   }
   drop_if(scene.force_elements, [&](const auto& element) { return is_at_gone(element->points()); });
   drop_if(scene.sensors, [&](const Sensor& sensor) {
-    const bool is_of_gone_tendon = sensor.kind == SensorKind::Tendon &&
+    const bool is_of_gone_tendon = traits_of(sensor.kind).place == SensedPlace::Tendon &&
                                    find_force_element(scene, "tendon", sensor.tendon) == scene.force_elements.size();
     return is_of_gone_tendon || goes(sensor.link) || joints.count(sensor.joint) > 0;
   });

@@ -39,7 +39,7 @@ double channel_value(const std::vector<double>& values, std::size_t channel) {
 /// Bias and noise of a sample.
 Errors errors_of(const Sensor& sensor, long sample) {
   Errors errors = Errors::Zero();
-  const std::size_t count = scene::sensor_error_count(sensor.kind);
+  const std::size_t count = scene::traits_of(sensor.kind).errors;
   for (std::size_t i = 0; i < count; ++i) errors[i] = channel_value(sensor.bias, i);
   if (sensor.noise.empty()) return errors;
   const std::uint64_t stream = NormalNoise::mixed(hashed(sensor.name) + static_cast<std::uint64_t>(sensor.seed));
@@ -54,8 +54,9 @@ Pose link_pose(const SensorPlace& place, const MotionView& view) {
 
 Vector6 measured_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view) {
   const Wrench wrench = sensed_wrench(view.model, view.state, place);
+  const bool in_world = scene::traits_of(sensor.kind).in_world;
   const Quaternion axes =
-      sensor.kind == SensorKind::Wrench ? link_pose(place, view).orientation.conjugate() : Quaternion::Identity();
+      in_world ? Quaternion(Quaternion::Identity()) : link_pose(place, view).orientation.conjugate();
   Vector6 out;
   out << axes * wrench.force, axes * wrench.moment;
   return out;

@@ -319,11 +319,26 @@ struct SensorChannel {
   const char* name;
   const char* unit;
 };
-/// The numbers that a sensor of that kind measures, in the order of its samples.
-const std::vector<SensorChannel>& sensor_channels(SensorKind kind);
-/// Number of values in a sensor's noise and bias. One for each channel; but six for a pose: position error [m] and
-/// rotation vector [rad], in the sensor's axes.
-std::size_t sensor_error_count(SensorKind kind);
+/// Where sensors of a kind measure: at a point of a link, in a joint that carries it, in a section of a beam, where
+/// bodies touch, or in a tendon.
+enum class SensedPlace { Point, Joint, Section, Touch, Tendon };
+/// What all code but the measurement itself needs to know about a kind of sensors.
+struct SensorTraits {
+  const char* name;  ///< in the scene
+  SensorKind kind;
+  SensedPlace place;
+  bool in_world;                        ///< vectors are along world axes; else along those of the link or sensor
+  std::vector<SensorChannel> channels;  ///< the numbers that it measures, in the order of its samples
+  /// Number of values in noise and bias. One for each channel; but six for a pose: position error [m] and rotation
+  /// vector [rad], in the sensor's axes.
+  std::size_t errors;
+};
+/// One row for each kind.
+const std::vector<SensorTraits>& sensor_kinds();
+const SensorTraits& traits_of(SensorKind kind);
+inline const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
+  return traits_of(kind).channels;
+}
 
 /// A sensor at a point of a link, with its own sample rate.
 struct Sensor {
