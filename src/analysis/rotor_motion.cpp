@@ -9,6 +9,7 @@
 #include "integrators/step_histories.h"
 #include "joints/elasticity.h"
 #include "joints/motor_step.h"
+#include "joints/set_points.h"
 
 namespace flexarm {
 namespace {
@@ -44,18 +45,6 @@ int equation_of(const Model& model, const DegreesOfFreedom& dof, std::size_t act
 double gear_twist(const Model& model, const State& state, std::size_t actuator) {
   const Coordinate& coordinate = model.coordinates[model.actuators[actuator].coordinate];
   return state.actuators[actuator].angle - state.released[coordinate.joint].displacement[coordinate.component % 3];
-}
-
-/// The set point of a controller at an instant of a motion.
-struct SetPointNow {
-  double value, rate;
-};
-
-SetPointNow set_point_now(const Model& model, const Servo& servo, const ServoState& state, double time) {
-  if (!std::isnan(state.set_point)) return {state.set_point_at(time), state.set_rate_at(time, 0)};
-  if (servo.set_point < 0) return {servo.start, 0};
-  const TimeFunction& history = model.histories[servo.set_point];
-  return {history(time), history.derivative(time)};
 }
 
 /// The coupling by a gear, and by a gain of the servo on the side that it measures.
@@ -97,11 +86,13 @@ void command_by_rates(const Model& model, const ActuatorRates& rates, Model& fro
     const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
     if (!law || model.coordinates[c].motion >= 0) continue;
     const Servo& servo = *actuator.servo;
-    const SetPointNow set = set_point_now(model, servo, state.actuators[i].servo, state.time);
-    if (!std::isnan(state.actuators[i].servo.set_point)) state.actuators[i].servo.set_point = set.value;
+    ServoState& own = state.actuators[i].servo;
+    const double set_point = set_point_at(model, servo, own, state.time);
+    const double set_rate = set_rate_at(model, servo, own, state.time);
+    if (!std::isnan(own.set_point)) own.set_point = set_point;
     if (law->mode == ServoMode::Effort) continue;
     const double measured = actuator.drive.gear && !servo.on_link ? rates.rotors[i] : rates.coordinates[c];
-    const double wanted = law->mode == ServoMode::Velocity ? set.value : set.rate;
+    const double wanted = law->mode == ServoMode::Velocity ? set_point : set_rate;
     Coordinate& coordinate = frozen.coordinates[c];
     const double of_scene = coordinate.effort < 0 ? 0 : frozen.histories[coordinate.effort](state.time);
     state.commands[c] = applied_effort(coordinate, state.commands[c], of_scene) + law->derivative * (wanted - measured);

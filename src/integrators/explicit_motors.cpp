@@ -122,11 +122,7 @@ double ExplicitMotors::effort(std::size_t actuator, const State& state, double o
   const ExplicitRotors::Motion& measured = servo.on_link ? link : rotor;
   const ServoInstant at{input.set_point, input.set_rate, measured.angle, measured.rate, integral, input.feedforward};
   const double demand = other + servo_effort(law, at), given = cut(actuator, range, demand);
-  if (law.mode == ServoMode::Effort) return given;
-  const bool is_velocity = law.mode == ServoMode::Velocity;
-  integral_rate = input.set_point - (is_velocity ? measured.rate : measured.angle);
-  const double gain = is_velocity ? law.proportional : law.integral;
-  if (law.tracking_time > 0 && gain > 0) integral_rate += (given - demand) / (gain * law.tracking_time);
+  integral_rate = flexarm::integral_rate(law, at, given - demand);
   return given;
 }
 

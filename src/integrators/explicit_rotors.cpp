@@ -1,9 +1,8 @@
 #include "integrators/explicit_rotors.h"
 
-#include <cmath>
-
 #include "joints/elasticity.h"
 #include "joints/joint_forces.h"
+#include "joints/motor_step.h"
 
 namespace flexarm {
 namespace {
@@ -58,8 +57,7 @@ double ExplicitRotors::act(std::size_t actuator, double motor, const Motion& rot
   const Drive& drive = model_.actuators[actuator].drive;
   const int place = places_[actuator];
   const ElasticInstant gear = elastic_instant(*drive.gear, rotor.angle - link.angle, rotor.rate - link.rate);
-  const double friction =
-      (drive.friction + drive.loss * std::abs(gear.effort)) * std::tanh(rotor.rate / kFrictionSpeed);
+  const double friction = friction_capacity(drive, gear.effort) * smooth_friction(rotor.rate);
   const double effort = motor + gear.effort - friction;
   dissipated += gear.dissipated + friction * rotor.rate;
   changes[place] = rotor.rate;

@@ -4,9 +4,13 @@
 
 namespace flexarm {
 
+double smooth_friction(double rate) {
+  return std::tanh(rate / kFrictionSpeed);
+}
+
 SmoothDirection smooth_direction(const CoordinateStep& change) {
   if (change.step == 0) return {};
-  const double t = std::tanh(rate_of(change) / kFrictionSpeed);
+  const double t = smooth_friction(rate_of(change));
   return {t, (1 - t * t) / kFrictionSpeed * rate_slope(change)};
 }
 
@@ -19,8 +23,7 @@ FrictionRise friction_rise(const Coordinate& coordinate, const CoordinateStep& c
 
 bool is_coarse_turn(double begin_rate, double end_rate, double refinement) {
   constexpr double kLargestTurn = 0.5;
-  return refinement * std::abs(std::tanh(end_rate / kFrictionSpeed) - std::tanh(begin_rate / kFrictionSpeed)) >
-         kLargestTurn;
+  return refinement * std::abs(smooth_friction(end_rate) - smooth_friction(begin_rate)) > kLargestTurn;
 }
 
 PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {

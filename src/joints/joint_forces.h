@@ -10,6 +10,8 @@ namespace flexarm {
 /// The speed v of the smooth Coulomb effort F tanh(rate / v) [rad/s or m/s].
 constexpr double kFrictionSpeed = 1e-3;
 
+/// Smooth friction against a rate, divided by its capacity F, at an instant.
+double smooth_friction(double rate);
 /// Smooth friction against the increment, divided by its capacity F: tanh(rate / v).
 struct SmoothDirection {
   double value = 0, slope = 0;  ///< `slope`: derivative with respect to the increment

@@ -90,7 +90,7 @@ class RotorBalance {
     Terms out;
     out.gear = elastic_effort(*drive_.gear, twist(u));
     out.motor = motor_effort(drive_, demand_, with_increment(rotor_.change, u), link_.increment);
-    out.capacity = is_static() ? 0 : drive_.friction + drive_.loss * std::abs(out.gear.effort);
+    out.capacity = is_static() ? 0 : friction_capacity(drive_, out.gear.effort);
     out.without_friction = drive_.inertia * (rotor_.acceleration_offset + rotor_.acceleration_slope * u) -
                            out.gear.effort - out.motor.value;
     out.own_slope = drive_.inertia * rotor_.acceleration_slope - out.motor.by_rotor;

@@ -5,6 +5,8 @@
 /// trial increment of the coordinate. The result is an effort on the coordinate, and its total derivative, in which the
 /// rotor follows the coordinate.
 
+#include <cmath>
+
 #include "joints/coordinate_step.h"
 #include "model/actuator.h"
 
@@ -45,6 +47,11 @@ struct MotorRange {
 };
 /// Returns the range at a rate of the rotor, cut at +-`limit`.
 MotorRange motor_range(const Drive& drive, double limit, double rate);
+
+/// The largest effort of a motor's friction, if its gear transmits this effort.
+inline double friction_capacity(const Drive& drive, double transmitted) {
+  return drive.friction + drive.loss * std::abs(transmitted);
+}
 
 /// Computes the action of a motor. `link`: the coordinate's step; `guess`: initial guess of the rotor's increment.
 MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,

@@ -65,6 +65,16 @@ double acting_rate(const ServoLaw& law, const SetPoint& set) {
   return law.mode == ServoMode::Velocity ? set.acting : set.acting_rate;
 }
 
+/// By what the integral is multiplied in the demand.
+double integral_gain(const ServoLaw& law) {
+  return law.mode == ServoMode::Velocity ? law.proportional : law.integral;
+}
+
+/// Whether the integral follows a saturated effort.
+bool calculates_back(const ServoLaw& law) {
+  return law.tracking_time > 0 && integral_gain(law) > 0;
+}
+
 double integral_share(const ServoInput& input) {
   return input.measured.at_end ? 1.0 : 0.5;
 }
@@ -126,11 +136,10 @@ double integral_at_end(const ServoLaw& law, const ServoInput& input, double incr
   const double error = error_at_begin(law, state, input), s = set_increment(law, input) - increment;
   const bool is_velocity = law.mode == ServoMode::Velocity;
   const double integral = state.integral + (is_velocity ? s : h * (error + 0.5 * s));
-  const double gain = is_velocity ? law.proportional : law.integral;
-  if (law.tracking_time <= 0 || gain <= 0) return integral;
+  if (!calculates_back(law)) return integral;
   // Back-calculation against windup: the integral changes such that the demanded effort follows the saturated one.
   const double lag = integral_share(input) * h / law.tracking_time;
-  return integral + h * excess / (gain * law.tracking_time * (1 + lag));
+  return integral + h * excess / (integral_gain(law) * law.tracking_time * (1 + lag));
 }
 
 double servo_effort(const ServoLaw& law, const ServoInstant& at) {
@@ -139,6 +148,12 @@ double servo_effort(const ServoLaw& law, const ServoInstant& at) {
   const double error = is_velocity ? at.integral : at.set_point - at.measured;
   const double error_rate = (is_velocity ? at.set_point : at.set_rate) - at.rate;
   return at.feedforward + law.proportional * error + law.derivative * error_rate + law.integral * at.integral;
+}
+
+double integral_rate(const ServoLaw& law, const ServoInstant& at, double excess) {
+  if (law.mode == ServoMode::Effort) return 0;
+  const double rate = at.set_point - (law.mode == ServoMode::Velocity ? at.rate : at.measured);
+  return calculates_back(law) ? rate + excess / (integral_gain(law) * law.tracking_time) : rate;
 }
 
 void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state) {
@@ -180,20 +195,12 @@ void sample(const Servo& servo, const SampledInput& input, ServoState& state) {
   if (input.time < state.samples * period - input.tolerance) return;
   const ServoLaw& law = law_of(servo, state);
   const double rate = (input.measured - state.measured) / period;
-  double output = input.feedforward;
-  if (law.mode == ServoMode::Effort) {
-    output += input.set_point;
-  } else {
-    const bool is_velocity = law.mode == ServoMode::Velocity;
-    const double error_rate = (is_velocity ? input.set_point : input.set_rate) - rate;
-    const double error = input.set_point - input.measured;
-    state.integral += period * (is_velocity ? error_rate : error);
-    output += law.proportional * (is_velocity ? state.integral : error) + law.derivative * error_rate +
-              law.integral * state.integral;
-  }
+  ServoInstant at{input.set_point, input.set_rate, input.measured, rate, 0, input.feedforward};
+  state.integral += period * integral_rate(law, at, 0);
+  at.integral = state.integral;
+  const double output = servo_effort(law, at);
   const double cut = std::clamp(output, -servo.effort_limit, servo.effort_limit);
-  const double gain = law.mode == ServoMode::Velocity ? law.proportional : law.integral;
-  if (law.tracking_time > 0 && gain > 0) state.integral += period * (cut - output) / (gain * law.tracking_time);
+  if (calculates_back(law)) state.integral += period * (cut - output) / (integral_gain(law) * law.tracking_time);
   std::rotate(state.outputs.begin(), state.outputs.end() - 1, state.outputs.end());
   state.outputs.front() = cut;
   state.measured = input.measured;

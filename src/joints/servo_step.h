@@ -77,6 +77,10 @@ struct ServoInstant {
 /// Returns the demanded effort of a continuous controller at an instant [N m or N].
 double servo_effort(const ServoLaw& law, const ServoInstant& at);
 
+/// Returns the rate of a controller's integral at an instant: of the error, or of the angle that a controller of
+/// velocity has to make up for. With back-calculation it follows the motor's effort minus the demanded one, `excess`.
+double integral_rate(const ServoLaw& law, const ServoInstant& at, double excess);
+
 /// Sets a controller's memory as if it had always been at rest with this measured position and this output.
 void settle(double measured, double output, ServoState& state);
 /// Moves the proportional part of the effort into the integral, so that the error can become zero. Returns the absolute

@@ -15,6 +15,12 @@ double set_point_at(const Model& model, const Servo& servo, const ServoCommand& 
   return function ? (*function)(time) : servo.start;
 }
 
+double set_rate_at(const Model& model, const Servo& servo, const ServoCommand& command, double time) {
+  if (!std::isnan(command.set_point)) return command.set_rate_at(time, 0);
+  const TimeFunction* function = set_point_function(model, servo, command);
+  return function ? function->derivative(time) : 0;
+}
+
 SampledInput sampled_input(const Model& model, const Servo& servo, const ServoCommand& command, double measured,
                            double time, double tolerance) {
   // By a straight line through two points behind the time, so that round-off of the time does not matter at a jump.

@@ -11,6 +11,8 @@ namespace flexarm {
 const TimeFunction* set_point_function(const Model& model, const Servo& servo, const ServoCommand& command);
 /// The set point at a time [s], in the unit of the servo's mode.
 double set_point_at(const Model& model, const Servo& servo, const ServoCommand& command, double time);
+/// The rate of the set point at a time.
+double set_rate_at(const Model& model, const Servo& servo, const ServoCommand& command, double time);
 /// What a sampled servo is given at a time [s], at which it measures `measured`. `tolerance`: see SampledInput.
 SampledInput sampled_input(const Model& model, const Servo& servo, const ServoCommand& command, double measured,
                            double time, double tolerance);
