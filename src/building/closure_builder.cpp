@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "building/closure_jacobian.h"
 #include "building/model_builder.h"
+#include "joints/closure_jacobian.h"
 #include "joints/joint_kinematics.h"
 #include "math/general_vector.h"
 #include "math/least_squares.h"

@@ -3,8 +3,8 @@
 #include <map>
 #include <string>
 
-#include "building/closure_jacobian.h"
 #include "building/model_builder.h"
+#include "joints/closure_jacobian.h"
 #include "joints/joint_kinematics.h"
 #include "math/least_squares.h"
 #include "model/degrees_of_freedom.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "building/closure_jacobian.h"
 #include "building/passes.h"
 #include "building/spatial_inertia.h"
+#include "joints/closure_jacobian.h"
 #include "joints/closure_maps.h"
 #include "joints/joint_kinematics.h"
 #include "math/dense_eigenpairs.h"

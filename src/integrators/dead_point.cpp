@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "building/closure_jacobian.h"
+#include "joints/closure_jacobian.h"
 #include "math/least_squares.h"
 
 namespace flexarm {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "building/model_builder.h"
+#include "flexarm/model/model_error.h"
 #include "joints/joint_forces.h"
 #include "math/cayley.h"
 

@@ -1,4 +1,4 @@
-#include "building/closure_jacobian.h"
+#include "joints/closure_jacobian.h"
 
 #include <map>
 #include <numeric>

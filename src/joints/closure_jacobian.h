@@ -1,5 +1,5 @@
 #pragma once
-/// The constraints of loops of rigid links as a matrix (internal to building/).
+/// The constraints of loops of rigid links as a matrix.
 
 #include <vector>
 
