@@ -23,6 +23,7 @@ void ExplicitStep::find_efforts(const State& state, const std::vector<double>& n
     const ExplicitRotors::Motion link = link_motion(i, numbers);
     const double of_scene = coordinate.effort < 0 ? 0 : values_[coordinate.effort];
     double& applied = applied_[i] = applied_effort(coordinate, state.commands[i], of_scene);
+    margins_.set_reversal(rubbing_joints_[i], link.rate);
     margins_.set(limits_[i], of_scene, -coordinate.effort_limit, coordinate.effort_limit);
     if (coordinate.motion >= 0) {
       efforts_[places_[i]] = applied = 0;  // until the motion is known to need one
@@ -47,6 +48,7 @@ void ExplicitStep::drive(std::size_t actuator, const State& state, const Explici
   double& effort = efforts_[places_[model_.actuators[actuator].coordinate]] = applied;
   if (rotors_.place(actuator) < 0) return;
   const double play = 0.5 * model_.actuators[actuator].drive.gear->backlash;
+  margins_.set_reversal(rubbing_rotors_[actuator], rotor.rate);
   margins_.set(plays_[actuator], rotor.angle - link.angle, -play, play);
   effort = rotors_.act(actuator, applied, rotor, link, own, change.data() + own_, change[work_ + 1], bodies_);
 }

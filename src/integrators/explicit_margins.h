@@ -1,12 +1,16 @@
 #pragma once
 /// Numbers that vanish where efforts have kinks, for explicit schemes. (docs/notes/explicit.md 3)
 
+#include <iterator>
 #include <vector>
+
+#include "joints/joint_forces.h"
 
 namespace flexarm {
 
 /// How far quantities are from both of their bounds, at the instant that was evaluated last: the demand of a motor from
-/// its limits, an effort of the scene from its limit, the twist of a gear from the ends of its play.
+/// its limits, an effort of the scene from its limit, the twist of a gear from the ends of its play, and the rate of
+/// what rubs from those between which smooth friction reverses.
 class ExplicitMargins {
  public:
   static constexpr int kNone = -1;
@@ -22,9 +26,24 @@ class ExplicitMargins {
     numbers_[place] = highest - quantity;
     numbers_[place + 1] = quantity - lowest;
   }
+  /// The same for the rate of something with smooth friction. Steps resolve a reversal if they end at all these rates.
+  int add_reversal() {
+    const int first = add();
+    for (std::size_t level = 1; level < std::size(kReversal); ++level) add();
+    return first;
+  }
+  void set_reversal(int first, double rate) {
+    if (first == kNone) return;
+    for (std::size_t level = 0; level < std::size(kReversal); ++level)
+      set(first + 2 * static_cast<int>(level), rate, -kReversal[level] * kFrictionSpeed,
+          kReversal[level] * kFrictionSpeed);
+  }
   const std::vector<double>& numbers() const { return numbers_; }
 
  private:
+  /// Relative to the speed of smooth friction.
+  static constexpr double kReversal[] = {0.7, 1.6, 3, 6};
+
   std::vector<double> numbers_;
 };
 

@@ -48,6 +48,24 @@ std::vector<int> plays_of_gears(const Model& model, ExplicitMargins& margins) {
   return places;
 }
 
+std::vector<int> rubbing_joints(const Model& model, ExplicitMargins& margins) {
+  std::vector<int> places;
+  for (const Coordinate& coordinate : model.coordinates) {
+    const bool rubs = coordinate.friction > 0 && !coordinate.sticks && !is_held(model, coordinate);
+    places.push_back(rubs ? margins.add_reversal() : ExplicitMargins::kNone);
+  }
+  return places;
+}
+
+std::vector<int> rubbing_rotors(const Model& model, ExplicitMargins& margins) {
+  std::vector<int> places;
+  for (const Actuator& actuator : model.actuators) {
+    const bool rubs = actuator.drive.gear && actuator.drive.friction + actuator.drive.loss > 0;
+    places.push_back(rubs ? margins.add_reversal() : ExplicitMargins::kNone);
+  }
+  return places;
+}
+
 int position_count(JointMapKind kind) {
   switch (kind) {
     case JointMapKind::Scalar:
@@ -73,6 +91,8 @@ ExplicitStep::ExplicitStep(const Model& model, const Scheme& scheme)
       reactions_(model),
       limits_(limits_of_efforts(model, margins_)),
       plays_(plays_of_gears(model, margins_)),
+      rubbing_joints_(rubbing_joints(model, margins_)),
+      rubbing_rotors_(rubbing_rotors(model, margins_)),
       events_(model, margins_.numbers().size()),
       poses_(model.nodes.size()),
       velocities_(model.nodes.size()),

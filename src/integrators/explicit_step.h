@@ -93,7 +93,8 @@ class ExplicitStep {
   ExplicitMotors motors_;
   ExplicitRotors rotors_;
   ExplicitReactions reactions_;
-  std::vector<int> limits_, plays_;  // places among the margins: per coordinate, per actuator
+  // Places among the margins, per coordinate and per actuator.
+  std::vector<int> limits_, plays_, rubbing_joints_, rubbing_rotors_;
   ExplicitEvents events_;
   std::vector<Joint> joints_;
   std::vector<int> places_;  // per coordinate: its rate; -1: it is held

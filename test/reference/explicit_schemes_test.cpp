@@ -354,6 +354,30 @@ TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
       <section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/></beam></link>)"));
 }
 
+// A block is pushed by P against its motion, and rubs with F tanh(v/s), which reverses within a fiftieth of a step.
+// With G(v) = P v - F s ln(P cosh(v/s) + F sinh(v/s)) the time to the rate v is m (G(start) - G(v)) / (P^2 - F^2).
+TEST_P(ExplicitSchemes, ReverseSmoothFriction) {
+  constexpr double kMass = 2, kPush = 5, kFriction = 2, kSpeed = 1e-3, kStart = 1, kStep = 0.02;
+  const auto primitive = [](double v) {
+    const double u = std::abs(v) / kSpeed, sign = v < 0 ? -1 : 1;
+    const double log_sum =
+        u + std::log(0.5 * (kPush + sign * kFriction) + 0.5 * (kPush - sign * kFriction) * std::exp(-2 * u));
+    return kPush * v - kFriction * kSpeed * log_sum;
+  };
+  Simulation simulation = simulation_of("<robot name=\"rail\"><link name=\"world\"/>" + link("block", "0 0 0") +
+                                            R"(<joint name="rail" type="prismatic"><parent link="world"/>
+      <child link="block"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="0"/>
+      <dynamics friction="2"/></joint><simulation><gravity xyz="0 0 0"/><initial joint="rail" velocity="1"/>
+      <effort joint="rail" history="-5"/></simulation></robot>)",
+                                        GetParam().name, kStep);
+  while (simulation.time() < 0.8) ASSERT_TRUE(simulation.step().converged);
+  const double v = simulation.velocity(0);
+  ASSERT_LT(v, -0.5);
+  const double time = kMass * (primitive(kStart) - primitive(v)) / (kPush * kPush - kFriction * kFriction);
+  EXPECT_NEAR(time, simulation.time(), 0.01 * kSpeed * kMass / kFriction)
+      << "a hundredth of the time that it reverses in";
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, ExplicitSchemes, ::testing::Values(Method{"rk4", 4, 0.05}, Method{"dop853", 8, 0.25}),
                          [](const auto& info) { return info.param.name; });
 
