@@ -160,7 +160,7 @@ void DependentRates::find_constraints(const ArticulatedBodies& bodies) {
 void DependentRates::move(std::vector<Released>& released) {
   for (int i = 0; i < rows_; ++i) block_.col(i) = jacobian_.col(dependent_[i]);
   loops_.compute(block_);
-  right_ = loops_.solve(values_);
+  solve_loops(values_);
   for (int i = 0; i < rows_; ++i) {
     const Place& place = places_[roots_[dependent_[i]]];
     const JointMap& joint = model_.joints[place.joint];
@@ -209,13 +209,20 @@ bool DependentRates::place(std::size_t stage, const std::vector<double>& positio
   return true;
 }
 
+/// Sets right_ to the solution for the factors of loops_. As Eigen's solve(), but that allocates memory in Eigen 5.
+void DependentRates::solve_loops(const Eigen::Ref<const Eigen::VectorXd>& given) {
+  right_.noalias() = loops_.permutationP() * given;
+  loops_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(right_);
+  loops_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(right_);
+}
+
 /// Sets G: first the columns of motions, then those of the independent coordinates.
 void DependentRates::find_columns() {
   const int moved = static_cast<int>(motions_.size());
   columns_.setZero();
   const auto column_of = [&](int k) { return k < moved ? k : independent_[k - moved]; };
   for (int k = 0; k < transfer_.cols() && rows_ > 0; ++k) {
-    right_ = loops_.solve(jacobian_.col(column_of(k)));
+    solve_loops(jacobian_.col(column_of(k)));
     transfer_.col(k) = -right_;
   }
   for (int rate = 0; rate < rates_; ++rate) {
@@ -258,7 +265,7 @@ void DependentRates::accelerate(std::size_t stage, const double* efforts, const 
     for_each_constraint(model_, [&](int row, const LoopClosure& closure, const ClosureConstraint& constraint) {
       values_[row] = find_curvature(closure, constraint, bodies);
     });
-    right_ = loops_.solve(values_);
+    solve_loops(values_);
     for (int i = 0; i < rows_; ++i)
       for (int rate = 0; rate < rates_; ++rate)
         if (root_column_[rate] == dependent_[i]) change_[rate] -= factors_[rate] * right_[i];

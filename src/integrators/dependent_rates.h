@@ -68,6 +68,7 @@ class DependentRates {
   void find_constraints(const ArticulatedBodies& bodies);
   double find_curvature(const LoopClosure& closure, const ClosureConstraint& constraint,
                         const ArticulatedBodies& bodies) const;
+  void solve_loops(const Eigen::Ref<const Eigen::VectorXd>& given);
   void find_columns();
   void move(std::vector<Released>& released);
 
