@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "flexarm/scene/bushing.h"
 #include "flexarm/scene/point_spring.h"
 #include "scene/scene_text.h"
 
@@ -292,7 +293,7 @@ TEST(GoodScene, SensorsOfOthersAreLeftAlone) {
 
 TEST(GoodScene, SpringBetweenPoints) {
   const SceneDescription scene = good_scene();
-  ASSERT_EQ(scene.force_elements.size(), 1u);
+  ASSERT_EQ(scene.force_elements.size(), 2u);
   const auto& spring = dynamic_cast<const PointSpring&>(*scene.force_elements[0]);
   EXPECT_EQ(spring.name, "tie");
   EXPECT_EQ(spring.from, "upper");
@@ -302,6 +303,15 @@ TEST(GoodScene, SpringBetweenPoints) {
   EXPECT_EQ(spring.stiffness, 20);
   EXPECT_EQ(spring.rest_length, 0.3);
   EXPECT_EQ(spring.damping, 0.5);
+}
+
+TEST(GoodScene, Bushing) {
+  const SceneDescription scene = good_scene();
+  const auto& bushing = dynamic_cast<const BushingDescription&>(*scene.force_elements.at(1));
+  EXPECT_EQ(bushing.from, "forearm");
+  EXPECT_EQ(bushing.stiffness.diagonal(), (Eigen::Matrix<double, 6, 1>() << 9, 9, 9, 1, 1, 1).finished());
+  EXPECT_NEAR(bushing.axes.y(), std::sin(0.05), 1e-12);
+  EXPECT_EQ(bushing.damping(3, 3), 0);
 }
 
 TEST(GoodScene, Contacts) {
