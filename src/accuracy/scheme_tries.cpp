@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flexarm/scene/scene_description.h"
 #include "schemes/explicit_tableau.h"
@@ -33,6 +34,8 @@ constexpr double kRoundOffBelow = 1e-6;
 /// The same for explicit schemes, which have no remainders of Newton's method.
 constexpr double kExplicitRoundOffBelow = 1e-10;
 constexpr int kMostStagnations = 6;
+/// Round-off of positions, which tries share: no estimate of what moves is smaller.
+constexpr double kLeastEstimate = std::numeric_limits<double>::epsilon();
 /// If a node turns by more than this in a step, its rotation lags so much that the error need not fall, and steps of
 /// different lengths may even agree, after both were halved [rad]. (docs/notes/beyond.md 1.4)
 constexpr double kResolvedTurn = 1;
@@ -173,7 +176,7 @@ double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
   if (judged_ > 2)
     estimate = std::max(estimate, motion_error(motion, earlier_, scale) * this->share(order, planned_earlier_));
   difference_ = difference;
-  return estimate;
+  return difference > 0 ? std::max(estimate, kLeastEstimate) : estimate;
 }
 
 bool SchemeTries::judge(AccurateRun& run) {

@@ -226,9 +226,8 @@ Stability judge_stability(const Model& model, const State& equilibrium) {
       if (own < -least) unstable.push_back(motion / ways.largest());
     }
   if (!unstable.empty() && !system.is_circulatory())
-    stability.motion =
-        motion_away(model, system, curvature, unstable, soft.answer(load_forces(model, equilibrium)),
-                    kStiffnessRoundOff * work_of_forces(model, equilibrium));
+    stability.motion = motion_away(model, system, curvature, unstable, soft.answer(load_forces(model, equilibrium)),
+                                   kStiffnessRoundOff * work_of_forces(model, equilibrium));
   return stability;
 }
 

@@ -139,8 +139,7 @@ class EquilibriumSearch {
 
   void name_fall() {
     const State* left = descent_->left();
-    if (left && result_.falling_link.empty())
-      result_.falling_link = judge_stability(model_, *left).motion.link;
+    if (left && result_.falling_link.empty()) result_.falling_link = judge_stability(model_, *left).motion.link;
   }
 
   /// Steps that fail are halved where there are beams. Rigid mechanisms have the descent.

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "accuracy/processor_time.h"
 #include "accuracy/tuning.h"
 #include "flexarm/model/model_error.h"
 #include "flexarm/simulation/simulation.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -21,11 +23,13 @@ constexpr double kPatience = 0.4, kMorePatience = 3;
 /// Length of the first step of an interval in a shifted run, relative to the others.
 constexpr double kShift = 0.37;
 
-/// A simulation with these meshes, scheme and tolerance, but built with the scene's own step, on which equations
-/// depend.
+/// A simulation with these settings. It is built with the scene's own step, since that fits the samples of servos; what
+/// the scheme takes from the step follows the settings.
 Simulation made_with(const scene::SceneDescription& scene, RunSettings settings) {
-  settings.step = scene.integrator.step;
-  return Simulation(with_settings(scene, settings));
+  const double step = std::exchange(settings.step, scene.integrator.step);
+  Simulation simulation(with_settings(scene, settings));
+  set_step_of_constants(simulation, step);
+  return simulation;
 }
 
 }  // namespace
