@@ -134,6 +134,7 @@ LocatedSteps::LocatedSteps(Simulation& simulation, const std::vector<double>& ce
       step_of_scene_(step_of_constants(simulation)),
       has_events_(may_have_events(simulation)),
       has_hits_(has_events_ && may_have_hits(model_of(simulation))) {
+  for_each_element(model_of(simulation).beams, [&](const auto&) { bends_ = true; });
   for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
 }
 
@@ -247,7 +248,7 @@ bool LocatedSteps::is_in_hit() const {
 /// numbers.
 void LocatedSteps::follow_hit() {
   const int halvings = state_of(simulation_).halving_level;
-  had_contacts = had_contacts || is_in_contact();
+  had_contacts = had_contacts || is_in_contact() || (bends_ && is_in_hit());
   if (is_at_event_) {
     good_steps_ = 0;
     is_new_hit_ = is_new_hit_ || level_ == kNoHit;  // perhaps

@@ -36,10 +36,12 @@ class LocatedSteps {
   /// watcher ends the run; `run.end` says which.
   bool advance_to(double time, RunWatcher& watcher, AccurateRun& run);
 
-  long iterations = 0;        ///< of Newton's method
-  int recoveries = 0;         ///< other guesses, and halvings unless events may cause them
-  double turn = 0;            ///< largest rotation of a node in a sub-step [rad]
-  bool had_contacts = false;  ///< whether bodies have touched each other
+  long iterations = 0;  ///< of Newton's method
+  int recoveries = 0;   ///< other guesses, and halvings unless events may cause them
+  double turn = 0;      ///< largest rotation of a node in a sub-step [rad]
+  /// Whether bodies have touched each other, or a stop has struck a mechanism with beams: it starts waves that few
+  /// steps resolve, so that differences of tries do not show the order of the scheme.
+  bool had_contacts = false;
 
  private:
   /// Not within a hit.
@@ -67,7 +69,7 @@ class LocatedSteps {
   int level_ = kNoHit;  // in a hit, steps have the length step() / 2^level_
   int good_steps_ = 0;  // since the level has changed
   int events_ = 0;      // in this cell so far
-  bool has_events_, has_hits_, is_at_event_ = false;
+  bool has_events_, has_hits_, bends_ = false, is_at_event_ = false;
   bool is_new_hit_ = false;  // no step of this hit has shown the level yet
   Snapshot before_;          // state before the step
 };
