@@ -10,8 +10,7 @@ namespace {
 using scene::JointKind;
 
 constexpr double kCart = 1.5, kBlock = 2.0, kRate = 0.6, kFriction = 3.0;
-/// Beginning of the motion: at a step's end, and within a step.
-constexpr double kStart = 0.4, kStep = 1e-3;
+constexpr double kStep = 1e-3;
 
 /// A cart on a rail along x follows `motion`.
 SceneBuilder cart(const std::string& motion) {

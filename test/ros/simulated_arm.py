@@ -111,7 +111,12 @@ def wait_for_arrival(force):
 
 def release_stop(stop):
     """Release the emergency stop, and wait until commands are accepted again."""
-    wait_for_log(lambda: stop.send(False), "emergency stop released")
+
+    def release():
+        stop.send(True)  # its release is said once, and that message may be missed
+        stop.send(False)
+
+    wait_for_log(release, "emergency stop released")
 
 
 def warnings_during(act, word):
