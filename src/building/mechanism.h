@@ -24,7 +24,7 @@ struct Mechanism {
   std::vector<int> node_parents;  ///< node that a node moves with when the joints outboard move; -1: world
   std::vector<int> slave_joint;   ///< per node: joint of which it is the slave, or -1
   std::vector<JointChain> tree_joints, loop_joints;  ///< root to leaf
-  double contact_time = kContactTime;                ///< of stops that say nothing else [s]
+  double contact_time = 0;                           ///< of stops that say nothing else [s]
 
   /// Pose of a node, or of the world (-1) [m].
   Pose pose_of(int node) const;

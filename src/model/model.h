@@ -30,10 +30,6 @@ struct NodalInertia {
   bool empty() const { return mass == 0 && rotary.isZero(0) && beam_rotary.isZero(0) && rotary_damping.isZero(0); }
 };
 
-/// Duration of a hit, if a scene says nothing else: long enough to be resolved by steps of 1 ms, short enough to be
-/// invisible [s].
-constexpr double kContactTime = 0.01;
-
 /// Unilateral stops of a scalar coordinate, whose stiffness grows with penetration (joints/joint_stop.h).
 struct LimitStop {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -43,9 +39,9 @@ struct LimitStop {
   /// Damping over the critical damping of the oscillator that stop and coordinate form. The default gives a restitution
   /// of 0.3 (joints/stop_restitution.h).
   double damping_ratio = 0.497239;
-  double contact_time = kContactTime;  ///< that an undamped hit lasts [s]; 0: the stiffness is given
-  double stiffness = 0;                ///< for small penetrations [N/m or N m/rad]
-  double damping = 0;                  ///< the same [N s/m or N m s/rad]
+  double contact_time = 0;  ///< that an undamped hit lasts [s]; 0: the stiffness is given
+  double stiffness = 0;     ///< for small penetrations [N/m or N m/rad]
+  double damping = 0;       ///< the same [N s/m or N m s/rad]
 
   /// Sets the inertia, and what follows from it.
   void carry(double moved_inertia);

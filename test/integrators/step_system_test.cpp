@@ -29,6 +29,7 @@ StepSettings newton_settings(double step, double tolerance, int max_iterations, 
 /// Stops from 0.6 to 3 that yield by at most 2, of a coordinate that moves this inertia.
 LimitStop stop(double inertia) {
   LimitStop out{0.6, 3.0, 0, 2.0, 2.0};
+  out.contact_time = 0.01;
   out.carry(inertia);
   return out;
 }

@@ -17,7 +17,6 @@ constexpr double kLower = -1, kUpper = 2, kStiffness = 50, kInertia = 2;
 /// Stops with the largest penetration `give`. If it is infinite, the stop is linear.
 LimitStop stops(double give, double damping = 0) {
   LimitStop out{kLower, kUpper, kInertia, give, give};
-  out.contact_time = 0;
   out.stiffness = kStiffness;
   out.damping = damping;
   return out;
