@@ -6,6 +6,7 @@
 #include "elements/bushing.h"
 #include "flexarm/scene/bushing.h"
 #include "model/model.h"
+#include "scene/force_element_kinds.h"
 #include "scene/readers.h"
 
 namespace flexarm::scene {
@@ -46,9 +47,7 @@ std::vector<double> BushingDescription::numbers() const {
 
 std::shared_ptr<ForceElementDescription> BushingDescription::with_links(const LinkChanges& change) const {
   auto out = std::make_shared<BushingDescription>(*this);
-  const LinkChange first = change(from), second = change(to);
-  out->from = first.name, out->from_at = first.frame * from_at;
-  out->to = second.name, out->to_at = second.frame * to_at;
+  const LinkChange first = out->change_links(change);
   out->axes = first.frame.orientation * axes;
   return out;
 }
@@ -68,12 +67,7 @@ std::shared_ptr<const ForceElement> BushingDescription::place(const ForcePlaceme
 std::shared_ptr<const ForceElementDescription> read_bushing(const XmlElement& bushing) {
   bushing.expect_only({"name", "from", "from_at", "to", "to_at", "rpy", "stiffness", "damping"});
   auto out = std::make_shared<BushingDescription>();
-  out->location = bushing.location();
-  if (bushing.has("name")) out->name = bushing.name("name").value_or("");
-  out->from = bushing.name("from").value_or("");
-  out->from_at = bushing.vector("from_at", out->from_at);
-  out->to = bushing.name("to").value_or("");
-  out->to_at = bushing.vector("to_at", out->to_at);
+  read_ends(bushing, *out);
   out->axes = read_pose(bushing).orientation;
   out->stiffness = read_matrix(bushing, "stiffness");
   if (bushing.has("damping")) out->damping = read_matrix(bushing, "damping");

@@ -19,6 +19,9 @@ struct ForceElementKind {
   std::function<std::shared_ptr<const ForceElementDescription>(const XmlElement&)> read;
 };
 
+/// Reads what elements between two points have in common: their name, and the links and points of their ends.
+void read_ends(const XmlElement& element, BetweenTwoPoints& out);
+
 /// Returns the kinds that every scene may have.
 const std::vector<ForceElementKind>& force_element_kinds();
 

@@ -2,6 +2,7 @@
 
 #include "elements/point_spring.h"
 #include "flexarm/scene/point_spring.h"
+#include "scene/force_element_kinds.h"
 
 namespace flexarm::scene {
 
@@ -14,9 +15,7 @@ std::vector<double> PointSpring::numbers() const {
 
 std::shared_ptr<ForceElementDescription> PointSpring::with_links(const LinkChanges& change) const {
   auto out = std::make_shared<PointSpring>(*this);
-  const LinkChange first = change(from), second = change(to);
-  out->from = first.name, out->from_at = first.frame * from_at;
-  out->to = second.name, out->to_at = second.frame * to_at;
+  out->change_links(change);
   return out;
 }
 
@@ -31,12 +30,7 @@ std::shared_ptr<const ForceElement> PointSpring::place(const ForcePlacement& pla
 std::shared_ptr<const ForceElementDescription> read_point_spring(const XmlElement& spring) {
   spring.expect_only({"name", "from", "from_at", "to", "to_at", "stiffness", "rest_length", "damping"});
   auto out = std::make_shared<PointSpring>();
-  out->location = spring.location();
-  if (spring.has("name")) out->name = spring.name("name").value_or("");
-  out->from = spring.name("from").value_or("");
-  out->from_at = spring.vector("from_at", out->from_at);
-  out->to = spring.name("to").value_or("");
-  out->to_at = spring.vector("to_at", out->to_at);
+  read_ends(spring, *out);
   out->stiffness = spring.number("stiffness", kNonNegative).value_or(0);
   if (spring.has("rest_length")) out->rest_length = spring.number("rest_length", kNonNegative);
   out->damping = spring.number("damping", kNonNegative, 0);

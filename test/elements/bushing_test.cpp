@@ -45,16 +45,6 @@ class Bushings : public ::testing::TestWithParam<bool> {
     return out;
   }
 
-  static State state_at(const Poses& poses) {
-    State state;
-    for (const NodePose& pose : poses) {
-      state.nodes.emplace_back();
-      state.nodes.back().position = pose.position;
-      state.nodes.back().orientation = pose.orientation;
-    }
-    return state;
-  }
-
   const NodePoint from{0, {0.1, -0.2, 0.05}, Quaternion(0.9, 0.1, -0.3, 0.2).normalized()},
       to{1, {-0.05, 0.1, 0.3}, Quaternion(0.8, 0.2, 0.3, -0.1).normalized()},
       ground{-1, {0.1, 0.2, 0.9}, Quaternion(0.9, -0.2, 0.1, 0.3).normalized()};

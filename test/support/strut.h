@@ -55,19 +55,15 @@ class Strut : public LineElement {
 };
 
 /// Reads <strut name="" from="" from_at="" to="" to_at="" linear="" cubic="" push=""/>.
-class StrutDescription : public scene::ForceElementDescription {
+class StrutDescription : public scene::BetweenTwoPoints {
  public:
-  std::string from, to;
-  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();
   StrutLaw law;
 
   const char* kind() const override { return "strut"; }
-  std::vector<scene::LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override { return {law.linear, law.cubic, law.push}; }
   std::shared_ptr<ForceElementDescription> with_links(const scene::LinkChanges& change) const override {
     auto out = std::make_shared<StrutDescription>(*this);
-    out->from = change(from).name, out->from_at = change(from).frame * from_at;
-    out->to = change(to).name, out->to_at = change(to).frame * to_at;
+    out->change_links(change);
     return out;
   }
   std::shared_ptr<const ForceElement> place(const scene::ForcePlacement& placement) const override {
@@ -78,12 +74,7 @@ class StrutDescription : public scene::ForceElementDescription {
 inline std::shared_ptr<const scene::ForceElementDescription> read_strut(const scene::XmlElement& strut) {
   strut.expect_only({"name", "from", "from_at", "to", "to_at", "linear", "cubic", "push"});
   auto out = std::make_shared<StrutDescription>();
-  out->location = strut.location();
-  if (strut.has("name")) out->name = strut.name("name").value_or("");
-  out->from = strut.name("from").value_or("");
-  out->from_at = strut.vector("from_at", out->from_at);
-  out->to = strut.name("to").value_or("");
-  out->to_at = strut.vector("to_at", out->to_at);
+  scene::read_ends(strut, *out);
   out->law.linear = strut.number("linear", scene::kNonNegative, 0);
   out->law.cubic = strut.number("cubic", scene::kNonNegative, 0);
   out->law.push = strut.number("push", scene::kAnyNumber, 0);

@@ -6,15 +6,12 @@
 namespace flexarm::scene {
 
 /// It has no force as the scene is described: the frame on `to` has the same axes as that on `from` there.
-class BushingDescription : public ForceElementDescription {
+class BushingDescription : public BetweenTwoPoints {
  public:
-  std::string from, to;                                            ///< names of links
-  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();      ///< in the undeformed link frames [m]
   Quaternion axes = Quaternion::Identity();                        ///< in the undeformed frame of `from`
   Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero();  ///< see flexarm::Bushing::Law
 
   const char* kind() const override { return "bushing"; }
-  std::vector<LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override;
   std::shared_ptr<ForceElementDescription> with_links(const LinkChanges& change) const override;
   std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const override;

@@ -66,6 +66,19 @@ class ForceElementDescription {
   SourceLocation location = {};
 };
 
+/// An element between a point of one link and a point of another one.
+class BetweenTwoPoints : public ForceElementDescription {
+ public:
+  std::string from, to;                                        ///< names of links
+  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();  ///< in the undeformed link frames [m]
+
+  std::vector<LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
+
+ protected:
+  /// Moves the points as the links change. @returns the change of `from`
+  LinkChange change_links(const LinkChanges& change);
+};
+
 using ForceElementDescriptions = std::vector<std::shared_ptr<const ForceElementDescription>>;
 
 }  // namespace scene

@@ -7,16 +7,13 @@
 
 namespace flexarm::scene {
 
-class PointSpring : public ForceElementDescription {
+class PointSpring : public BetweenTwoPoints {
  public:
-  std::string from, to;                                        ///< names of links
-  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();  ///< in the undeformed link frames [m]
-  double stiffness = 0;                                        ///< [N/m]
-  std::optional<double> rest_length = {};                      ///< [m]; empty: its initial length
-  double damping = 0;                                          ///< [N s/m]
+  double stiffness = 0;                    ///< [N/m]
+  std::optional<double> rest_length = {};  ///< [m]; empty: its initial length
+  double damping = 0;                      ///< [N s/m]
 
   const char* kind() const override { return "spring"; }
-  std::vector<LinkPoint> points() const override { return {{"from", from, from_at}, {"to", to, to_at}}; }
   std::vector<double> numbers() const override;
   std::shared_ptr<ForceElementDescription> with_links(const LinkChanges& change) const override;
   std::shared_ptr<const ForceElement> place(const ForcePlacement& placement) const override;
