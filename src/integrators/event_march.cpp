@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include "joints/joint_kinematics.h"
+
 #include "joints/joint_stop.h"
 #include "math/step_end.h"
 
@@ -36,8 +36,7 @@ EventMarch::EventMarch(const Model& model, const Scheme& scheme)
       settings_(settings_of_march()),
       system_(model, scheme),
       newton_(system_, settings_),
-      poses_(model.nodes.size()),
-      velocities_(model.nodes.size()) {
+      rate_(model) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (!model.coordinates[i].limit) continue;
     const double damping = model.coordinates[i].limit->damping;
@@ -76,7 +75,7 @@ void EventMarch::restart(const State& state) {
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const Corner& corner = corners_[i];
     if (corner.is_friction) {
-      const double now = state.rests[corner.coordinate] > 0 ? 0 : rate(model_, state, corner.coordinate);
+      const double now = state.rests[corner.coordinate] > 0 ? 0 : rate_(model_, state, corner.coordinate);
       set_stage(i, (now > 0) - (now < 0));
     } else {
       set_stage(i, static_cast<int>(stop_stage(reach(corner, model_, state))));
@@ -84,27 +83,17 @@ void EventMarch::restart(const State& state) {
   }
 }
 
-double EventMarch::rate(const Model& model, const State& state, int index) {
-  const Coordinate& coordinate = model.coordinates[index];
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    poses_[i] = node_pose(state.nodes[i]);
-    velocities_[i] = spatial_velocity(state.nodes[i]);
-  }
-  return released_rates(model, coordinate.joint, poses_, state.released[coordinate.joint],
-                        velocities_)[coordinate.component];
-}
-
 StopReach EventMarch::reach(const Corner& corner, const Model& model, const State& state) {
   const Coordinate& coordinate = model.coordinates[corner.coordinate];
   return stop_reach(*coordinate.limit, corner.place == 1,
                     state.released[coordinate.joint].displacement[coordinate.component % 3],
-                    rate(model, state, corner.coordinate));
+                    rate_(model, state, corner.coordinate));
 }
 
 double EventMarch::guard(std::size_t index, int stage, const Model& model, const State& state) {
   assert(index < corners_.size());
   const Corner& corner = corners_[index];
-  if (corner.is_friction) return stage * rate(model, state, corner.coordinate);
+  if (corner.is_friction) return stage * rate_(model, state, corner.coordinate);
   const StopReach now = reach(corner, model, state);
   if (stage == kReleased && now.depth <= 0) return 1;  // march() notices that
   return stop_guard(static_cast<StopStage>(stage), now);
@@ -148,7 +137,7 @@ bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
       const StopReach now = stop_reach(limit, corner.place == 1, position, speed);
       return now.depth > 0 && std::abs(corner.damping * now.rate) <= kQuiet * now.push;
     };
-    if (!is_quiet(begin, rate(model_, state, corner.coordinate)) || !is_quiet(end, mean)) return true;
+    if (!is_quiet(begin, rate_(model_, state, corner.coordinate)) || !is_quiet(end, mean)) return true;
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include "integrators/event_modes.h"
 #include "integrators/newton.h"
 #include "integrators/step_system.h"
+#include "joints/joint_kinematics.h"
 
 namespace flexarm {
 
@@ -84,7 +85,6 @@ class EventMarch {
     int pieces = 0;
   };
   StopReach reach(const Corner& corner, const Model& model, const State& state);
-  double rate(const Model& model, const State& state, int coordinate);
   void set_stage(std::size_t corner, int stage);
   bool solve(const State& state, double step);
   void note_holds();
@@ -116,8 +116,7 @@ class EventMarch {
   std::vector<double> jump_, first_, second_, third_;
   double last_jump_time_ = 0;
   std::size_t last_jump_ = kNone;
-  std::vector<NodePose> poses_;
-  std::vector<Vector6> velocities_;
+  StateRates rate_;
 };
 
 }  // namespace flexarm

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "joints/joint_kinematics.h"
-
 namespace flexarm {
 namespace {
 
@@ -17,7 +15,7 @@ constexpr double kRoundOff = 1e-10, kLeast = 1e-12;
 
 }  // namespace
 
-MotionKinks::MotionKinks(const Model& model, const Scheme& scheme) : model_(model) {
+MotionKinks::MotionKinks(const Model& model, const Scheme& scheme) : model_(model), rate_(model) {
   places_.resize(model.coordinates.size());
   let_go();
   const bool alternates = !scheme.is_static && !scheme.tableau && scheme.is_incremental() && !scheme.backward_velocity;
@@ -27,9 +25,6 @@ MotionKinks::MotionKinks(const Model& model, const Scheme& scheme) : model_(mode
     if (coordinate.motion >= 0 && model.histories[coordinate.motion].may_have_corners())
       led_.push_back(static_cast<int>(c));
   }
-  const auto slides = [&](int c) { return model.joints[model.coordinates[c].joint].kind == JointMapKind::Slide; };
-  if (std::any_of(led_.begin(), led_.end(), slides)) poses_.resize(model.nodes.size());
-  velocities_.resize(poses_.size());
 }
 
 bool MotionKinks::found(const State& state, double step) {
@@ -39,7 +34,7 @@ bool MotionKinks::found(const State& state, double step) {
     const Coordinate& coordinate = model_.coordinates[c];
     const TimeFunction& motion = model_.histories[coordinate.motion];
     const double x0 = motion(state.time), x1 = motion(state.time + h), x2 = motion(state.time + 2 * h);
-    const double from = rate(state, coordinate), to = (3 * x2 - 4 * x1 + x0) / (2 * h), jump = std::abs(to - from);
+    const double from = rate_(model_, state, c), to = (3 * x2 - 4 * x1 + x0) / (2 * h), jump = std::abs(to - from);
     places_[c] = 0.5 * (x0 + x2) - 0.25 * h * (to - from);
     if (!(jump > kJump * (std::abs(from) + std::abs(to)))) continue;
     if (jump * step < kRoundOff * std::abs(x0) + kLeast) continue;
@@ -53,24 +48,6 @@ bool MotionKinks::found(const State& state, double step) {
 
 void MotionKinks::let_go() {
   std::fill(places_.begin(), places_.end(), std::numeric_limits<double>::quiet_NaN());
-}
-
-double MotionKinks::rate(const State& state, const Coordinate& coordinate) {
-  const JointMap& joint = model_.joints[coordinate.joint];
-  const Released& released = state.released[coordinate.joint];
-  if (joint.kind != JointMapKind::Slide) {
-    const bool is_on_ground = joint.master < 0;
-    const NodePose master = is_on_ground ? NodePose() : node_pose(state.nodes[joint.master]);
-    const NodePose slave = node_pose(state.nodes[joint.slave]);
-    const Vector6 carrying = is_on_ground ? Vector6(Vector6::Zero()) : spatial_velocity(state.nodes[joint.master]);
-    return released_rates(joint, {master, slave, released}, carrying,
-                          spatial_velocity(state.nodes[joint.slave]))[coordinate.component];
-  }
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    poses_[i] = node_pose(state.nodes[i]);
-    velocities_[i] = spatial_velocity(state.nodes[i]);
-  }
-  return released_rates(model_, coordinate.joint, poses_, released, velocities_)[coordinate.component];
 }
 
 }  // namespace flexarm

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "joints/joint_kinematics.h"
 #include "model/model.h"
 #include "model/state.h"
 #include "schemes/scheme.h"
@@ -30,14 +31,10 @@ class MotionKinks {
   void let_go();
 
  private:
-  /// The rate of a coordinate, from the velocities of its nodes.
-  double rate(const State& state, const Coordinate& coordinate);
-
   const Model& model_;
   std::vector<int> led_;  // coordinates with motions that may have kinks
   std::vector<double> places_;
-  std::vector<NodePose> poses_;      // of all nodes, only for sliders
-  std::vector<Vector6> velocities_;  // the same
+  StateRates rate_;
 };
 
 }  // namespace flexarm

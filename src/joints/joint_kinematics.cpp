@@ -50,4 +50,28 @@ ReleasedVector released_rates(const Model& model, int j, const std::vector<NodeP
   return slave.columns.transpose() * (velocities[joint.slave] - slave.carried) / slave.columns.col(0).squaredNorm();
 }
 
+StateRates::StateRates(const Model& model) {
+  for (const JointMap& joint : model.joints)
+    if (joint.kind == JointMapKind::Slide) poses_.resize(model.nodes.size());
+  velocities_.resize(poses_.size());
+}
+
+double StateRates::operator()(const Model& model, const State& state, int c) {
+  const Coordinate& coordinate = model.coordinates[c];
+  const JointMap& joint = model.joints[coordinate.joint];
+  const Released& released = state.released[coordinate.joint];
+  if (joint.kind != JointMapKind::Slide) {
+    const bool is_on_ground = joint.master < 0;
+    const NodePose master = is_on_ground ? NodePose() : node_pose(state.nodes[joint.master]);
+    const Vector6 carrying = is_on_ground ? Vector6(Vector6::Zero()) : spatial_velocity(state.nodes[joint.master]);
+    return released_rates(joint, {master, node_pose(state.nodes[joint.slave]), released}, carrying,
+                          spatial_velocity(state.nodes[joint.slave]))[coordinate.component];
+  }
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = node_pose(state.nodes[i]);
+    velocities_[i] = spatial_velocity(state.nodes[i]);
+  }
+  return released_rates(model, coordinate.joint, poses_, released, velocities_)[coordinate.component];
+}
+
 }  // namespace flexarm

@@ -4,6 +4,7 @@
 #include "joints/joint_map.h"
 #include "joints/slide_map.h"
 #include "model/model.h"
+#include "model/state.h"
 
 namespace flexarm {
 
@@ -42,5 +43,18 @@ SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePo
 /// Computes the released rates from the velocities of all nodes, by least squares.
 ReleasedVector released_rates(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
                               const std::vector<Vector6>& velocities);
+
+/// Rates of single coordinates in a state. Allocates no memory after construction.
+class StateRates {
+ public:
+  explicit StateRates(const Model& model);
+
+  /// The rate of coordinate `c` [m/s or rad/s]. `model`: the one of construction, or one that differs in numbers only.
+  double operator()(const Model& model, const State& state, int c);
+
+ private:
+  std::vector<NodePose> poses_;      // of all nodes, for sliders only
+  std::vector<Vector6> velocities_;  // the same
+};
 
 }  // namespace flexarm
