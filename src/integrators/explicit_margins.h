@@ -30,21 +30,32 @@ class ExplicitMargins {
   int add_reversal() {
     const int first = add();
     for (std::size_t level = 1; level < std::size(kReversal); ++level) add();
-    return first;
+    reversals_.push_back({first, 0});
+    return static_cast<int>(reversals_.size()) - 1;
   }
-  void set_reversal(int first, double rate) {
-    if (first == kNone) return;
-    for (std::size_t level = 0; level < std::size(kReversal); ++level)
-      set(first + 2 * static_cast<int>(level), rate, -kReversal[level] * kFrictionSpeed,
-          kReversal[level] * kFrictionSpeed);
+  void set_reversal(int place, double rate) {
+    if (place != kNone) reversals_[place].rate = rate;
   }
-  const std::vector<double>& numbers() const { return numbers_; }
+  /// All numbers of the instant that was set last. Those of reversals are computed here, since only ends of steps need
+  /// them, not stages.
+  const std::vector<double>& numbers() {
+    for (const Reversal& reversal : reversals_)
+      for (std::size_t level = 0; level < std::size(kReversal); ++level)
+        set(reversal.first + 2 * static_cast<int>(level), reversal.rate, -kReversal[level] * kFrictionSpeed,
+            kReversal[level] * kFrictionSpeed);
+    return numbers_;
+  }
 
  private:
   /// Relative to the speed of smooth friction.
   static constexpr double kReversal[] = {0.7, 1.6, 3, 6};
 
+  struct Reversal {
+    int first;    // of its numbers
+    double rate;  // [m/s or rad/s]
+  };
   std::vector<double> numbers_;
+  std::vector<Reversal> reversals_;
 };
 
 }  // namespace flexarm
