@@ -16,6 +16,8 @@ namespace {
 constexpr double kAtRest = 1e-12;
 /// Fraction of a step by which its end, a sum of steps, may miss a given time because of round-off.
 constexpr double kRoundOff = 1e-6;
+/// Time before the end of a step that counts as an instant, relative to the step: far more than kRoundOff.
+constexpr double kInstant = 1e-3;
 /// Relative to a step of the scene: shorter steps are for what strikes, in which nothing relaxes.
 constexpr double kStrike = 1e-3;
 
@@ -171,6 +173,15 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
   return input;
 }
 
+StepForce Actuators::held_effort(const Servo& servo, const ServoState& before, const ServoState& now) const {
+  const double time = configuration_.state().time, step = configuration_.step();
+  const double mean = held_output(servo, now, time, step);
+  if (configuration_.scheme().is_incremental()) return {mean, mean, mean};
+  const double instant = kInstant * step;
+  return StepForce::at_points(mean, held_output(servo, before, time - instant, instant),
+                              held_output(servo, now, time + step - instant, instant));
+}
+
 void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& part) const {
   const Servo& servo = *actuator.servo;
   part.demand.limit = servo_limit(configuration_.model(), actuator);
@@ -181,7 +192,9 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
     sample(servo,
            sampled_input(configuration_.model(), servo, state.servo, part.input.measured.begin, time, kRoundOff * step),
            part.servo);
-    part.demand.constant += held_output(servo, part.servo, time, step);
+    const StepForce held = held_effort(servo, state.servo, part.servo);
+    part.demand.constant += held.acting;
+    part.demand.surplus += held.acting - held.at_end;
     return;
   }
   const ServoLaw& law = law_of(servo, state.servo);

@@ -73,6 +73,9 @@ class Actuators {
   SetPoint set_point(const Servo& servo, const ServoState& state) const;
   SetPoint commanded_set_point(const ServoState& state) const;
   double rate_of_command(const ServoState& state, double time) const;
+  /// The output of a sampled servo over the step. `before`, `now`: its memory before and after the sample that may be
+  /// due at the beginning.
+  StepForce held_effort(const Servo& servo, const ServoState& before, const ServoState& now) const;
   /// Adds the servo's demand to that of the motor.
   void ask(const Actuator& actuator, const ActuatorState& state, Part& part) const;
   void note_play(std::size_t index, FirstEvent& first);

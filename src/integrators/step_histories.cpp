@@ -42,9 +42,8 @@ StepForce force_over(const Scheme& scheme, const Instants& at, const Value& valu
     out.acting = out.at_end = out.mean;
     return out;
   }
-  const double earlier = value(at.earlier), point = value(at.point);
-  out.acting = point + (out.mean - ((1 - at.share) * earlier + at.share * point));
-  out.at_end = at.point == at.end ? point : value(at.end);
+  out = StepForce::at_points(out.mean, value(at.earlier), value(at.point), at.share);
+  if (at.point != at.end) out.at_end = value(at.end);
   return out;
 }
 

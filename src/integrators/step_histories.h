@@ -23,6 +23,12 @@ struct StepForce {
   double acting = 0;
   double mean = 0;    ///< over the step
   double at_end = 0;  ///< value at the end of the step; in conserving schemes the mean
+
+  /// For forces at the ends of steps. `earlier`, `point`: the forces that the last step and this one have at their
+  /// ends, whose mean with the weights 1 - `share` and `share` would stand for that over this step.
+  static StepForce at_points(double mean, double earlier, double point, double share = 0.5) {
+    return {point + (mean - ((1 - share) * earlier + share * point)), mean, point};
+  }
 };
 
 /// All functions of time for loads, efforts and servos. A factor scales loads and efforts, so that they can grow in
