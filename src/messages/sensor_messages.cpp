@@ -39,6 +39,13 @@ geometry_msgs::PoseStamped pose_message(const SensorSample& sample) {
   return message;
 }
 
+geometry_msgs::TwistStamped twist_message(const SensorSample& sample) {
+  geometry_msgs::TwistStamped message;
+  message.twist.linear = to_vector3(part(sample, 0));
+  message.twist.angular = to_vector3(part(sample, 3));
+  return message;
+}
+
 StrainStamped strain_message(const SensorSample& sample) {
   StrainStamped message;
   message.strain = sample.values[0];
@@ -58,6 +65,8 @@ SensorMessage message_of(SensorKind kind, const SensorSample& sample) {
       return imu_message(sample);
     case SensorKind::Pose:
       return pose_message(sample);
+    case SensorKind::Twist:
+      return twist_message(sample);
     case SensorKind::Strain:
       return strain_message(sample);
     case SensorKind::Tendon:

@@ -52,7 +52,9 @@ const std::vector<SensorTraits>& sensor_kinds() {
                                           imu = {{"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"},
                                                  {"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}},
                                           pose = {{"x", "m"},  {"y", "m"},  {"z", "m"}, {"qx", "1"},
-                                                  {"qy", "1"}, {"qz", "1"}, {"qw", "1"}};
+                                                  {"qy", "1"}, {"qz", "1"}, {"qw", "1"}},
+                                          twist = {{"vx", "m/s"},   {"vy", "m/s"},   {"vz", "m/s"},
+                                                   {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
   static const std::vector<SensorTraits> kinds = {
       {"wrench", SensorKind::Wrench, Place::Joint, false, wrench, 6},
       {"reaction", SensorKind::Reaction, Place::Joint, true, wrench, 6},
@@ -60,6 +62,7 @@ const std::vector<SensorTraits>& sensor_kinds() {
       {"strain", SensorKind::Strain, Place::Section, false, strain, 1},
       {"imu", SensorKind::Imu, Place::Point, false, imu, 6},
       {"pose", SensorKind::Pose, Place::Point, true, pose, 6},
+      {"twist", SensorKind::Twist, Place::Point, true, twist, 6},
       {"contact", SensorKind::Contact, Place::Touch, false, wrench, 6},
       {"tendon", SensorKind::Tendon, Place::Tendon, false, tendon, 2}};
   return kinds;

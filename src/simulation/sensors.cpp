@@ -91,6 +91,13 @@ Vector6 measured_motion(const SensorPlace& place, const MotionView& view, Publis
   return out;
 }
 
+Vector6 measured_twist(const SensorPlace& place, const MotionView& view, PublishedMotion& motion) {
+  const ProbeState probe = probe_state(view.model, view.state, motion.velocities(view).nodes(), place.point);
+  Vector6 out;
+  out << probe.velocity, probe.angular_velocity;
+  return out;
+}
+
 /// Sets a sample to a pose in the world, with errors in the axes of the pose.
 void set_pose(const Pose& pose, const Errors& errors, SensorSample& sample) {
   const Vector3 position = pose.position + pose.orientation * errors.head<3>();
@@ -119,6 +126,8 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
       return set(touching_wrench(place, view, motion));
     case SensorKind::Imu:
       return set(measured_motion(place, view, motion));
+    case SensorKind::Twist:
+      return set(measured_twist(place, view, motion));
     case SensorKind::Tendon: {
       thread_local std::vector<double> outputs;  // the length, the tension at the first guide, ...
       outputs.clear();

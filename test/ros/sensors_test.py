@@ -6,7 +6,7 @@ import unittest
 import rospy
 import rostest
 from flexarm.msg import StrainStamped
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import Imu
 from simulated_arm import SimulatedArm, wait_until
 
@@ -14,11 +14,12 @@ TOPICS = {
     "force_torque": WrenchStamped,
     "unit": Imu,
     "eye": PoseStamped,
+    "odometer": TwistStamped,
     "gauge": StrainStamped,
 }
 STEPS = 2000  # of 1 ms: the arm is at rest by then
 AT_ONCE = 50  # steps: not more than a publisher's queue holds
-SAMPLES = {"force_torque": STEPS // 10, "unit": STEPS, "eye": STEPS, "gauge": STEPS}
+SAMPLES = {"force_torque": STEPS // 10, "unit": STEPS, "eye": STEPS, "odometer": STEPS, "gauge": STEPS}
 
 
 class Sensors(unittest.TestCase):
@@ -54,6 +55,9 @@ class Sensors(unittest.TestCase):
         self.assertLess(eye.pose.position.z, 0)  # it hangs down
         self.assertGreater(gauge.strain, 1e-5)  # the upper side is stretched
         self.assertEqual(wrench.header.frame_id, "hand")
+        twist = self.received["odometer"][-1].twist
+        self.assertLess(max(abs(value) for v in (twist.linear, twist.angular) for value in (v.x, v.y, v.z)), 1e-3)
+        self.assertEqual(self.received["odometer"][-1].header.frame_id, "base")
         self.assertEqual(eye.header.frame_id, "base")
         self.assertEqual(gauge.header.frame_id, "boom")
 

@@ -135,6 +135,25 @@ TEST(Sensors, OfInertiaMeasureGravityAtRest) {
   EXPECT_GT(values[5], 9.7);
 }
 
+// Differences over steps of a motion on a circle are off by less than the square of the angle of two steps.
+TEST(Sensors, OfTwistsMeasureVelocitiesInTheWorld) {
+  const double omega = 2, step = 1e-3;
+  SceneBuilder b;
+  b.body("arm", 1, Vector3::Zero(), Matrix3::Identity());
+  b.joint("hinge", scene::JointKind::Continuous, "world", "arm", {0, 0, 0.5}, {0, 0, 1});
+  b.scene.motions.push_back({"hinge", TimeFunction::parse("2*t"), {}});
+  b.scene.integrator.step = step;
+  b.sensor("odometer", SensorKind::Twist, "arm", {0.3, 0.4, 0.1});
+  Simulation simulation(b.scene);
+  for (int n = 0; n < 50; ++n) ASSERT_TRUE(simulation.step().converged);
+  const Vector3 spin(0, 0, omega),
+      at = Eigen::AngleAxisd(omega * simulation.time(), spin / omega) * Vector3(0.3, 0.4, 0);
+  const auto& values = simulation.sample(0).values;
+  const double bound = omega * std::pow(2 * omega * step, 2);
+  EXPECT_LT((Vector3(values[0], values[1], values[2]) - spin.cross(at)).norm(), bound * at.norm());
+  EXPECT_LT((Vector3(values[3], values[4], values[5]) - spin).norm(), bound);
+}
+
 /// A body that moves along a rail at 0.5 m/s, with a sensor on it.
 SceneBuilder moving_body(const scene::Sensor& sensor) {
   SceneBuilder b;

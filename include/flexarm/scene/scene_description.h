@@ -310,6 +310,7 @@ enum class SensorKind {
   Strain,        ///< of a flexible link: axial strain of the fibre through the sensor's position
   Imu,           ///< angular velocity, and acceleration minus gravity, in axes that turn with the sensor
   Pose,          ///< of the sensor in the world
+  Twist,         ///< velocity and angular velocity of the sensor, in world axes
   Contact,       ///< contact force and moment on the link or on `group`, about the sensor, in link axes
   Tendon         ///< length of a tendon, and its tension at the first guide
 };
