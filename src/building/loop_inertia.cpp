@@ -2,9 +2,7 @@
 
 #include "building/passes.h"
 #include "building/spatial_inertia.h"
-#include "joints/closure_jacobian.h"
-#include "joints/closure_maps.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/dense_eigenpairs.h"
 #include "math/least_squares.h"
 
