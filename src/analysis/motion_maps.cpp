@@ -10,13 +10,6 @@
 #include "math/so3.h"
 
 namespace flexarm {
-namespace {
-
-/// Columns of the constraints are dependent if their pivots are smaller than this.
-constexpr double kIndependentColumn = 1e-9;
-
-}  // namespace
-
 MechanismPose pose_of(const State& state) {
   return {configuration_of(state), state.force_memory};
 }
@@ -118,12 +111,14 @@ std::vector<int> MotionMaps::scalars_of_columns() const {
 MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector<bool>& is_driven) const {
   assert(static_cast<int>(is_driven.size()) == columns_);
   Split out;
-  const Eigen::MatrixXd rows = constraints(pose, at(pose));
+  Eigen::MatrixXd rows = constraints(pose, at(pose));
+  const Eigen::VectorXd scales = scalar_scales(model_, dof_);
+  const std::vector<int> scalars = scalars_of_columns();
   std::vector<int> candidates;
   for (int column = 0; column < columns_; ++column)
-    if (!is_driven[column]) candidates.push_back(column);
+    if (!is_driven[column]) candidates.push_back(column), rows.col(column) *= scales[scalars[column]];
   if (rows.rows() > 0)
-    for (const Eigen::Index i : independent_rows(picked_columns(rows, candidates).transpose(), kIndependentColumn))
+    for (const Eigen::Index i : independent_rows(picked_columns(rows, candidates).transpose(), kIndependent))
       out.dependent.push_back(candidates[i]);
   if (static_cast<Eigen::Index>(out.dependent.size()) != rows.rows())
     throw std::runtime_error("at a dead point, a loop cannot be linearised");
