@@ -1,7 +1,6 @@
 #include "analysis/falling.h"
 
 #include "analysis/linearised_motion.h"
-#include "joints/joint_kinematics.h"
 #include "math/least_squares.h"
 
 namespace flexarm {
@@ -18,19 +17,16 @@ struct Ways {
   Eigen::Matrix3Xd columns;  ///< direction of each [m per unit], world axes
 };
 
-Ways ways_of(const Model& model, const DegreesOfFreedom& dof, const State& state, int joint) {
-  const JointMap& map = model.joints[joint];
-  std::vector<NodePose> nodes;
-  nodes.reserve(state.nodes.size());
-  for (const NodeState& node : state.nodes) nodes.push_back(node_pose(node));
-  FoldMaps maps;
-  variational_maps(map, joint_pose(map, nodes, state.released[joint]), Vector6::Zero(), maps);
-  Ways out{{}, Eigen::Matrix3Xd(3, maps.right.cols())};
-  for (Eigen::Index k = 0; k < maps.right.cols(); ++k) {
+Ways ways_of(const Kinematics& kinematics, int joint) {
+  const Model& model = kinematics.model();
+  const DegreesOfFreedom& dof = kinematics.degrees_of_freedom();
+  const ReleasedColumns& columns = kinematics.joint(joint).right;
+  Ways out{{}, Eigen::Matrix3Xd(3, columns.cols())};
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     const int scalar = dof.first[dof.variable_of_joint(joint)] + static_cast<int>(k);
     const bool is_driven = model.coordinates[model.first_coordinate[joint] + k].motion >= 0;
-    if (is_driven || dof.equation[scalar] < 0 || !maps.right.col(k).tail<3>().isZero(0)) continue;
-    out.columns.col(static_cast<Eigen::Index>(out.scalars.size())) = maps.right.col(k).head<3>();
+    if (is_driven || dof.equation[scalar] < 0 || !columns.col(k).tail<3>().isZero(0)) continue;
+    out.columns.col(static_cast<Eigen::Index>(out.scalars.size())) = columns.col(k).head<3>();
     out.scalars.push_back(scalar);
   }
   out.columns.conservativeResize(3, static_cast<Eigen::Index>(out.scalars.size()));
@@ -80,10 +76,11 @@ Fall fall_of(const Model& model, const DegreesOfFreedom& dof, const State& state
   Fall fall;
   if (is_tied(model, dof)) return fall;
   const std::vector<int> carried_by = carriers(model);
+  const Kinematics kinematics(model, dof, configuration_of(state));
   const double balanced = kInBalance * work_of_forces(model, state) / model.length_scale;
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     if (model.joints[j].master >= 0 || model.joints[j].kind == JointMapKind::Slide) continue;
-    const Ways ways = ways_of(model, dof, state, j);
+    const Ways ways = ways_of(kinematics, j);
     double mass = 0;
     for (std::size_t i = 0; i < carried_by.size(); ++i)
       if (carried_by[i] == j) mass += model.inertias[i].total_mass;

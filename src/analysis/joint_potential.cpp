@@ -8,7 +8,7 @@
 
 #include "analysis/linearised_motion.h"
 #include "analysis/passed_contacts.h"
-#include "joints/joint_map.h"
+#include "joints/kinematics.h"
 #include "math/least_squares.h"
 
 namespace flexarm {
@@ -20,8 +20,6 @@ constexpr std::size_t kMostAxes = 300;
 constexpr double kLargestTurn = 1;
 /// Weight of a coordinate with limits, when coordinates are chosen to close loops. The others have 1.
 constexpr double kShareOfLimited = 0.1;
-/// Columns of constraints are independent if their pivots are larger than this part of the largest entry.
-constexpr double kIndependentColumn = 1e-6;
 
 bool is_unknown(const DegreesOfFreedom& dof, const Coordinate& coordinate) {
   return dof.equation[dof.scalar_of(coordinate)] >= 0;
@@ -106,21 +104,19 @@ double JointPotentials::position(const State& state, std::size_t axis) const {
 
 /// Indices of the coordinates that remain independent. The others are the ones that close loops best: their columns of
 /// the constraints' derivatives are independent.
-std::vector<std::size_t> JointPotentials::independent() const {
-  const Matrix whole = tangent_matrix();
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(coordinates_.size()),
-                          static_cast<Eigen::Index>(multipliers_.size()));
+std::vector<std::size_t> JointPotentials::independent(const State& state) const {
+  const DegreesOfFreedom& dof = system_.degrees_of_freedom();
+  const Eigen::MatrixXd jacobian =
+      closure_jacobian({model_, dof, configuration_of(state)}, Constraints::WithMultipliers);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(coordinates_.size()), jacobian.rows());
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
-    const Axis& axis = coordinates_[i];
+    const Coordinate& coordinate = model_.coordinates[coordinates_[i].coordinate];
     // Stops should stay bounds of axes, so coordinates with stops are the last to be chosen to close loops.
-    const double share = (model_.coordinates[axis.coordinate].limit ? kShareOfLimited : 1.0) / axis.scale;
-    for (std::size_t m = 0; m < multipliers_.size(); ++m)
-      columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)) =
-          share * whole.coeff(multipliers_[m], axis.equation);
+    const double share = coordinate.limit ? kShareOfLimited : 1.0;
+    columns.row(static_cast<Eigen::Index>(i)) = share * jacobian.col(dof.scalar_of(coordinate)).transpose();
   }
   std::vector<bool> is_taken(coordinates_.size(), false);
-  const double largest = columns.cwiseAbs().maxCoeff();
-  for (const Eigen::Index taken : independent_rows(columns, kIndependentColumn * largest)) is_taken[taken] = true;
+  for (const Eigen::Index taken : independent_rows(columns, kIndependent)) is_taken[taken] = true;
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     if (!is_taken[i]) left.push_back(i);
@@ -129,10 +125,8 @@ std::vector<std::size_t> JointPotentials::independent() const {
 
 bool JointPotentials::choose_axes(const State& state) {
   if (multipliers_.empty()) return false;
-  system_.begin_equilibrium(state, 1);
-  if (!system_.evaluate(true)) return false;
   std::vector<Axis> chosen;
-  for (const std::size_t i : independent()) chosen.push_back(coordinates_[i]);
+  for (const std::size_t i : independent(state)) chosen.push_back(coordinates_[i]);
   const auto is_same = [](const Axis& a, const Axis& b) { return a.coordinate == b.coordinate; };
   if (std::equal(chosen.begin(), chosen.end(), axes_.begin(), axes_.end(), is_same)) return false;
   axes_ = std::move(chosen);

@@ -100,7 +100,7 @@ class JointPotentials {
   bool place(const JointPotential& from, const Eigen::VectorXd& step, State& to);
   bool find_multipliers(JointPotential& at);
   Matrix tangent_matrix() const;
-  std::vector<std::size_t> independent() const;
+  std::vector<std::size_t> independent(const State& state) const;
   void find_bounds();
   void add_bounds(std::size_t axis, std::size_t coordinate);
   void add_stops(JointPotential& at) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/element_matrices.h"
+#include "analysis/folded_sums.h"
 #include "analysis/linearised_motion.h"
 
 namespace flexarm {
@@ -73,7 +74,7 @@ Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
     add_element(difference, element.first_block,
                 material_curvature(element, state_) - material_stiffness(element, state_));
   });
-  fold(difference);
+  fold(kinematics_, difference);
   const Eigen::SparseMatrix<double> sum = matrix(stiffness_) + matrix(difference);
   return 0.5 * (sum + Eigen::SparseMatrix<double>(sum.transpose()));
 }

@@ -6,8 +6,8 @@
 
 #include "analysis/element_matrices.h"
 #include "analysis/falling.h"
+#include "analysis/folded_sums.h"
 #include "integrators/force_elements.h"
-#include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
 #include "math/least_squares.h"
 
@@ -33,17 +33,19 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
       dof_(system_.degrees_of_freedom()),
       stiffness_(system_.tangent().matrix()),
       damping_(model, dof_),
-      mass_(model, dof_) {
+      mass_(model, dof_),
+      kinematics_(model, dof_, configuration_of(state)) {
   balance();
   const Fall fall = fall_of(model, dof_, state_, system_.residual());
   if (!fall.inertia.empty()) {
     state_.wrenches.insert(state_.wrenches.end(), fall.inertia.begin(), fall.inertia.end());
     balance();
   }
-  set_joint_maps();
   for (SparseTangent* tangent : {&damping_, &mass_}) couple_force_elements(model, state_, *tangent);
   assemble_damping();
-  assemble_mass();
+  mass_.set_zero();
+  add_mass(kinematics_, state_, mass_);
+  fold(kinematics_, mass_);
   matrices_ = with_rotors(model, dof_, state_, system_.actuators(), stiffness_, damping_, mass_);
 }
 
@@ -94,49 +96,6 @@ void LinearisedMotion::find_multipliers() {
   if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
 }
 
-void LinearisedMotion::set_joint_maps() {
-  std::vector<NodePose> nodes;
-  for (const NodeState& node : state_.nodes) nodes.push_back(node_pose(node));
-  maps_.folds.resize(model_.joints.size());
-  maps_.slides.resize(model_.joints.size());
-  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-    const JointMap& joint = model_.joints[j];
-    if (joint.kind == JointMapKind::Slide)
-      slide_variational_maps(model_.slide_lines[joint.line], nodes, state_.released[j].displacement[0], Vector6::Zero(),
-                             maps_.slides[j]);
-    else
-      variational_maps(joint, joint_pose(joint, nodes, state_.released[j]), Vector6::Zero(), maps_.folds[j]);
-  }
-  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
-    const Coordinate& following = model_.coordinates[mimic.coordinate];
-    const int master = model_.coordinates[following.mimicked].joint;
-    const double slope = following.mimic.derivative(state_.released[master].displacement[0]);
-    maps_.mimics.push_back({slope, slope, 0});
-  }
-}
-
-/// The diagonal entry of a released coordinate.
-double& LinearisedMotion::diagonal(SparseTangent& tangent, int joint, int component) const {
-  const int count = released_count(model_.joints[joint].kind);
-  return tangent.diagonal_block(dof_.variable_of_joint(joint))[component * count + component];
-}
-
-void LinearisedMotion::assemble_mass() {
-  mass_.set_zero();
-  for_each_element(model_.beams,
-                   [&](const auto& element) { add_element(mass_, element.first_block, mass_matrix(element, state_)); });
-  for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
-    const NodalInertia& inertia = model_.inertias[i];
-    const Matrix3 rotation = state_.nodes[i].orientation.toRotationMatrix();
-    Eigen::Map<Matrix6> block(mass_.diagonal_block(static_cast<int>(i)));
-    block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
-    block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
-  }
-  for (const ActuatorTerms& terms : actuator_terms(model_, state_))
-    diagonal(mass_, terms.joint, terms.component) += terms.mass;
-  fold(mass_);
-}
-
 void LinearisedMotion::assemble_damping() {
   damping_.set_zero();
   for_each_element(model_.beams, [&](const auto& element) {
@@ -154,10 +113,10 @@ void LinearisedMotion::assemble_damping() {
         rotation * model_.inertias[i].rotary_damping * rotation.transpose();
   }
   for (const Coordinate& coordinate : model_.coordinates)
-    diagonal(damping_, coordinate.joint, coordinate.component) +=
+    diagonal_entry(kinematics_, damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, state_.released[coordinate.joint]);
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
-    diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
+    diagonal_entry(kinematics_, damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
   const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);
   const std::vector<const double*> memories = memories_of(model_.force_elements, state_.force_memory);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -166,69 +125,25 @@ void LinearisedMotion::assemble_damping() {
     const Eigen::MatrixXd slope = element.dampers(state_, memories[k], Eigen::VectorXd::Zero(rows.rows())).slope;
     damping_.add_coupling(static_cast<int>(k), rows.transpose() * slope * rows);
   }
-  fold(damping_);
-}
-
-void LinearisedMotion::fold(SparseTangent& tangent) const {
-  for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
-    if (model_.joints[j].kind == JointMapKind::Slide)
-      tangent.fold(j, maps_.slides[j]);
-    else
-      tangent.fold(j, maps_.folds[j]);
-  }
-  tangent.fold_mimics(maps_.mimics);
-  tangent.finish();
-}
-
-// ---------------------------------------------------------------- motions
-
-std::vector<double> LinearisedMotion::scalars(const Eigen::VectorXd& vector) const {
-  std::vector<double> scalars(dof_.scalar_count, 0.0);
-  for (int s = 0; s < dof_.scalar_count; ++s)
-    if (dof_.equation[s] >= 0) scalars[s] = vector[dof_.equation[s]];
-  for (std::size_t i = 0; i < dof_.mimics.size(); ++i)
-    scalars[dof_.first[dof_.mimics[i].slave_variable]] =
-        maps_.mimics[i].right * scalars[dof_.first[dof_.mimics[i].master_variable]];
-  return scalars;
-}
-
-std::vector<Vector6> LinearisedMotion::node_motion(const std::vector<double>& scalars) const {
-  std::vector<Vector6> motion(model_.nodes.size());
-  for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = Eigen::Map<const Vector6>(&scalars[dof_.first[i]]);
-  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-    const JointMap& joint = model_.joints[j];
-    const double* rates = scalars.data() + dof_.first[dof_.variable_of_joint(static_cast<int>(j))];
-    Vector6& slave = motion[joint.slave];
-    slave.setZero();
-    if (joint.kind == JointMapKind::Slide) {
-      const SlideMaps& map = maps_.slides[j];
-      slave = rates[0] * map.released_right;
-      for (int k = 0; k < map.count; ++k)
-        slave += map.right[k] * motion[model_.slide_lines[joint.line].nodes[map.first + k]];
-      continue;
-    }
-    const FoldMaps& map = maps_.folds[j];
-    if (joint.master >= 0) {
-      slave = motion[joint.master];
-      slave.head<3>() += motion[joint.master].tail<3>().cross(map.lever_right);
-    }
-    for (int k = 0; k < map.right.cols(); ++k) slave += map.right.col(k) * rates[k];
-  }
-  return motion;
+  fold(kinematics_, damping_);
 }
 
 Mode LinearisedMotion::expand(const Eigen::VectorXcd& vector) const {
-  const std::vector<double> real = scalars(vector.real()), imaginary = scalars(vector.imag());
-  const std::vector<Vector6> real_motion = node_motion(real), imaginary_motion = node_motion(imaginary);
+  Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(dof_.scalar_count, 2);  // real, imaginary
+  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
+    if (const int equation = dof_.equation[scalar]; equation >= 0)
+      parts.row(scalar) << vector[equation].real(), vector[equation].imag();
+  kinematics_.complete(parts);
   Mode mode;
-  for (std::size_t n = 0; n < real_motion.size(); ++n) {
+  for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+    const auto motion = parts.middleRows<6>(dof_.first[n]);
     mode.node_motion.emplace_back();
-    mode.node_motion.back().real() = real_motion[n];
-    mode.node_motion.back().imag() = imaginary_motion[n];
+    mode.node_motion.back().real() = motion.col(0);
+    mode.node_motion.back().imag() = motion.col(1);
   }
   for (const Coordinate& coordinate : model_.coordinates) {
-    const int scalar = dof_.first[dof_.variable_of_joint(coordinate.joint)] + coordinate.component;
-    mode.coordinate_motion.emplace_back(real[scalar], imaginary[scalar]);
+    const auto motion = parts.row(dof_.scalar_of(coordinate));
+    mode.coordinate_motion.emplace_back(motion[0], motion[1]);
   }
   return mode;
 }

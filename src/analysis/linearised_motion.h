@@ -9,16 +9,10 @@
 #include "analysis/modes.h"
 #include "analysis/rotor_motion.h"
 #include "integrators/step_system.h"
+#include "joints/kinematics.h"
 #include "solver/sparse_tangent.h"
 
 namespace flexarm {
-
-/// Maps of all joints at a configuration, for zero residual.
-struct JointMaps {
-  std::vector<FoldMaps> folds;    ///< per joint
-  std::vector<SlideMaps> slides;  ///< per joint; used for those that slide
-  std::vector<MimicMap> mimics;
-};
 
 /// Work of weight, loads at time 0 and applied wrenches over the model's length scale, or over a rotation by 1 rad [J].
 double work_of_forces(const Model& model, const State& equilibrium);
@@ -80,13 +74,7 @@ class LinearisedMotion {
   Matrix matrix(const std::vector<double>& extended, const SparseTangent& own) const;
   void balance();
   void find_multipliers();
-  void set_joint_maps();
-  double& diagonal(SparseTangent& tangent, int joint, int component) const;
-  void assemble_mass();
   void assemble_damping();
-  void fold(SparseTangent& tangent) const;
-  std::vector<double> scalars(const Eigen::VectorXd& vector) const;
-  std::vector<Vector6> node_motion(const std::vector<double>& scalars) const;
 
   const Model& model_;
   State state_;  // with the inertia of what falls among its wrenches
@@ -94,7 +82,7 @@ class LinearisedMotion {
   const DegreesOfFreedom& dof_;
   const SparseTangent& stiffness_;
   SparseTangent damping_, mass_;
-  JointMaps maps_;
+  Kinematics kinematics_;
   MotionMatrices matrices_;  // with rotors behind elastic gears; empty if there are none
 };
 

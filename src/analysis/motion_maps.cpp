@@ -5,26 +5,13 @@
 #include <cassert>
 #include <stdexcept>
 
-#include "joints/closure_maps.h"
-#include "joints/joint_kinematics.h"
 #include "math/least_squares.h"
 #include "math/picked.h"
 #include "math/so3.h"
 
 namespace flexarm {
-namespace {
-
-/// Columns of the constraints are dependent if their pivots are smaller than this.
-constexpr double kIndependent = 1e-9;
-
-}  // namespace
-
 MechanismPose pose_of(const State& state) {
-  MechanismPose pose;
-  for (const NodeState& node : state.nodes) pose.nodes.push_back(node_pose(node));
-  pose.released = state.released;
-  pose.force_memory = state.force_memory;
-  return pose;
+  return {configuration_of(state), state.force_memory};
 }
 
 State state_at(const MechanismPose& pose) {
@@ -78,45 +65,22 @@ Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
   Eigen::MatrixXd maps = Eigen::MatrixXd::Zero(rows_, columns_);
   for (int scalar = 0; scalar < rows_; ++scalar)
     if (dof_.equation[scalar] >= 0) maps(scalar, dof_.equation[scalar]) = 1;
-  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
-    const Coordinate& following = model_.coordinates[mimic.coordinate];
-    const int master = model_.coordinates[following.mimicked].joint;
-    maps.row(dof_.first[mimic.slave_variable]) =
-        following.mimic.derivative(pose.released[master].displacement[0]) * maps.row(dof_.first[mimic.master_variable]);
-  }
-  FoldMaps fold;
-  SlideMaps slide;
-  const auto carry = [&](int node, int carrier, const Vector3& arm) {  // like a rigid body
-    auto own = maps.middleRows<6>(dof_.first[node]);
-    const auto carried = maps.middleRows<6>(dof_.first[carrier]);
-    own += carried;
-    own.topRows<3>() -= so3::hat(arm) * carried.bottomRows<3>();
-  };
+  const Kinematics kinematics(model_, dof_, pose);
+  kinematics.move_followers(maps);
   for (const int node : order_) {
+    if (const int j = dof_.slave_joint[node]; j >= 0) {
+      kinematics.move_slave(j, maps);
+      continue;
+    }
+    const int carrier = carriers_[node];
+    if (carrier < 0) continue;
+    const NodePose& frame = pose.nodes[carrier];
     auto own = maps.middleRows<6>(dof_.first[node]);
-    const int j = dof_.slave_joint[node];
-    if (j < 0) {
-      const int carrier = carriers_[node];
-      if (carrier < 0) continue;
-      const NodePose& frame = pose.nodes[carrier];
-      for (const int k : {0, 3})
-        for (int c = 0; c < 3; ++c) own.block<3, 1>(k, dof_.equation[dof_.first[node] + k + c]) = frame.rotation.col(c);
-      carry(node, carrier, pose.nodes[node].position - frame.position);
-      continue;
-    }
-    const JointMap& joint = model_.joints[j];
-    const int released = dof_.first[dof_.variable_of_joint(j)];
-    if (joint.kind == JointMapKind::Slide) {
-      const SlideLine& line = model_.slide_lines[joint.line];
-      slide_variational_maps(line, pose.nodes, pose.released[j].displacement[0], Vector6::Zero(), slide, false);
-      own = slide.released_right * maps.row(released);
-      for (int k = 0; k < slide.count; ++k)
-        own += slide.right[k] * maps.middleRows<6>(dof_.first[line.nodes[slide.first + k]]);
-      continue;
-    }
-    variational_maps(joint, joint_pose(joint, pose.nodes, pose.released[j]), Vector6::Zero(), fold);
-    own = fold.right * maps.middleRows(released, fold.right.cols());
-    if (joint.master >= 0) carry(node, joint.master, fold.lever_right);
+    for (const int k : {0, 3})
+      for (int c = 0; c < 3; ++c) own.block<3, 1>(k, dof_.equation[dof_.first[node] + k + c]) = frame.rotation.col(c);
+    const auto carried = maps.middleRows<6>(dof_.first[carrier]);  // like a rigid body
+    own += carried;
+    own.topRows<3>() -= so3::hat(Vector3(pose.nodes[node].position - frame.position)) * carried.bottomRows<3>();
   }
   for (int i = 0; i < dof_.node_count; ++i) {
     auto spins = maps.middleRows<3>(dof_.first[i] + 3);
@@ -127,21 +91,14 @@ Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
 
 Eigen::MatrixXd MotionMaps::constraints(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
   assert(maps.rows() == rows_ && maps.cols() == columns_);
-  Eigen::MatrixXd rows(constraint_count_, columns_);
-  int row = 0;
-  const auto of_node = [&](int node, Vector6 own) {
-    own.tail<3>() = (pose.nodes[node].rotation.transpose() * own.tail<3>()).eval();
-    return Eigen::RowVectorXd(own.transpose() * maps.middleRows<6>(dof_.first[node]));
-  };
-  for (const LoopClosure& closure : model_.closures)
-    for (const ClosureConstraint& constraint : closure.constraints) {
-      const NodePose parent = closure.parent < 0 ? NodePose() : pose.nodes[closure.parent];
-      const ClosureRows own = closure_rows(closure, constraint, {parent, pose.nodes[closure.child]});
-      rows.row(row) = of_node(closure.child, own.child);
-      if (closure.parent >= 0) rows.row(row) += of_node(closure.parent, own.parent);
-      ++row;
-    }
-  return rows;
+  const ConstraintRows jacobian = closure_jacobian({model_, dof_, pose}, Constraints::WithMultipliers);
+  const Eigen::VectorXd scales = scalar_scales(model_, dof_);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(constraint_count_, columns_);  // by the unknowns
+  for (int row = 0; row < constraint_count_; ++row)
+    for (ConstraintRows::InnerIterator entry(jacobian, row); entry; ++entry)
+      if (const int column = dof_.equation[entry.col()]; column >= 0)
+        rows(row, column) = entry.value() / scales[entry.col()];
+  return rows * unknowns(pose, maps);
 }
 
 std::vector<int> MotionMaps::scalars_of_columns() const {
@@ -154,10 +111,12 @@ std::vector<int> MotionMaps::scalars_of_columns() const {
 MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector<bool>& is_driven) const {
   assert(static_cast<int>(is_driven.size()) == columns_);
   Split out;
-  const Eigen::MatrixXd rows = constraints(pose, at(pose));
+  Eigen::MatrixXd rows = constraints(pose, at(pose));
+  const Eigen::VectorXd scales = scalar_scales(model_, dof_);
+  const std::vector<int> scalars = scalars_of_columns();
   std::vector<int> candidates;
   for (int column = 0; column < columns_; ++column)
-    if (!is_driven[column]) candidates.push_back(column);
+    if (!is_driven[column]) candidates.push_back(column), rows.col(column) *= scales[scalars[column]];
   if (rows.rows() > 0)
     for (const Eigen::Index i : independent_rows(picked_columns(rows, candidates).transpose(), kIndependent))
       out.dependent.push_back(candidates[i]);
@@ -207,11 +166,7 @@ MechanismPose MotionMaps::moved(const MechanismPose& pose, const CoordinateRates
     for (int k = 0; k < own.size(); ++k) own[k] = way_of(dof_.first[dof_.variable_of_joint(j)] + k);
     out.released[j] = updated(model_.joints[j], pose.released[j], own);
   }
-  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
-    const Coordinate& following = model_.coordinates[mimic.coordinate];
-    const double master = out.released[model_.coordinates[following.mimicked].joint].displacement[0];
-    out.released[following.joint].displacement[0] = following.mimic.value(master);
-  }
+  place_followers(model_, out.released);
   for (const int i : order_) {
     NodePose& node = out.nodes[i];
     if (const int j = dof_.slave_joint[i]; j >= 0) {

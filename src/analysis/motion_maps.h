@@ -7,16 +7,11 @@
 
 #include <Eigen/Core>
 
-#include "model/degrees_of_freedom.h"
-#include "model/model.h"
-#include "model/state.h"
+#include "joints/kinematics.h"
 
 namespace flexarm {
 
-/// Poses of all nodes, and values of all coordinates.
-struct MechanismPose {
-  std::vector<NodePose> nodes;            ///< slaves included
-  std::vector<Released> released;         ///< per joint
+struct MechanismPose : Configuration {
   std::vector<double> force_memory = {};  ///< as in State: force elements measure by it
 };
 MechanismPose pose_of(const State& state);
@@ -62,7 +57,7 @@ class MotionMaps {
   /// The pose after `time` [s] of a motion that begins at `pose` with these rates, exact up to the second order of
   /// time.
   MechanismPose moved(const MechanismPose& pose, const CoordinateRates& rates, double time) const;
-  /// Rows of the loop constraints, by the columns. `maps`: at() of the same pose.
+  /// Rows of the loop constraints, divided by their scales, by the columns. `maps`: at() of the same pose.
   Eigen::MatrixXd constraints(const MechanismPose& pose, const Eigen::MatrixXd& maps) const;
 
  private:

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "building/model_builder.h"
-#include "joints/closure_jacobian.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/general_vector.h"
 #include "math/least_squares.h"
 
@@ -98,29 +97,16 @@ Eigen::VectorXd allowed_motion(const Eigen::MatrixXd& block) {
                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(motion.size()));
 }
 
-/// The model after its joints have moved by `motion`, which has an entry for each scalar.
-Model moved(Model model, const DegreesOfFreedom& dof, const Eigen::VectorXd& motion) {
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const int variable = dof.variable_of_joint(static_cast<int>(j));
-    if (dof.size[variable] == 0) continue;
-    const ReleasedVector increment = motion.segment(dof.first[variable], dof.size[variable]);
-    model.initial_released[j] = updated(model.joints[j], model.initial_released[j], increment);
-  }
-  for (const Coordinate& coordinate : model.coordinates)
-    if (coordinate.mimicked >= 0)
-      model.initial_released[coordinate.joint].displacement[0] =
-          coordinate.mimic.value(model.initial_released[model.coordinates[coordinate.mimicked].joint].displacement[0]);
-  for (std::size_t j = 0; j < model.joints.size(); ++j)
-    model.nodes[model.joints[j].slave] = slave_pose(model, static_cast<int>(j), model.nodes, model.initial_released[j]);
-  return model;
+/// Derivatives of all scaled constraints after the mechanism has moved from its start.
+ConstraintRows jacobian_after(const Model& model, const DegreesOfFreedom& dof, const Eigen::VectorXd& motion) {
+  const Configuration start = initial_configuration(model);
+  return closure_jacobian({model, dof, moved(model, dof, start, motion)}, Constraints::All);
 }
 
 /// Second derivatives of all scaled constraints along a scaled motion.
 Eigen::VectorXd curvatures(const Model& model, const DegreesOfFreedom& dof, const Eigen::VectorXd& motion) {
   const Eigen::VectorXd way = kStep * scalar_scales(model, dof).cwiseProduct(motion);
-  return (closure_jacobian(moved(model, dof, way), dof) * motion -
-          closure_jacobian(moved(model, dof, -way), dof) * motion) /
-         (2 * kStep);
+  return (jacobian_after(model, dof, way) * motion - jacobian_after(model, dof, -way) * motion) / (2 * kStep);
 }
 
 /// Name of the closure that has a row of the Jacobian.
@@ -203,7 +189,8 @@ SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mech
   if (model.closures.empty()) return {std::move(mechanism)};
   const DegreesOfFreedom dof(model);
   std::vector<bool> is_free = free_scalars(dof);
-  const ConstraintRows jacobian = with_columns(closure_jacobian(model, dof), is_free);
+  const Kinematics kinematics(model, dof, initial_configuration(model));
+  const ConstraintRows jacobian = with_columns(closure_jacobian(kinematics, Constraints::All), is_free);
   std::vector<bool> is_kept(static_cast<std::size_t>(jacobian.rows()), false);
   for (const ConstraintGroup& group : independent_groups(jacobian))
     for (const Eigen::Index row : independent_rows(group.block, kIndependent)) is_kept[group.rows[row]] = true;

@@ -4,10 +4,8 @@
 #include <string>
 
 #include "building/model_builder.h"
-#include "joints/closure_jacobian.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/least_squares.h"
-#include "model/degrees_of_freedom.h"
 
 namespace flexarm {
 namespace {
@@ -36,7 +34,6 @@ class InitialVelocity {
   bool is_given(const Coordinate& coordinate) const;
   /// Sets the velocity of a joint's slave from its master's.
   void follow(int joint, const ReleasedVector& rates);
-  double mimic_ratio(const Coordinate& coordinate) const;
   /// Rates that the scene gives or implies (by a motion or a mimic). Returns false if none is given.
   bool given_rates(const JointChain& chain, ReleasedVector& rates) const;
   double given_rate(const Coordinate& coordinate, bool& is_given) const;
@@ -95,7 +92,7 @@ bool InitialVelocity::is_given(const Coordinate& coordinate) const {
 void InitialVelocity::satisfy_closures() {
   const DegreesOfFreedom dof(model_);
   const Eigen::VectorXd scales = scalar_scales(model_, dof);
-  const ConstraintRows jacobian = closure_jacobian(model_, dof);
+  const ConstraintRows jacobian = closure_jacobian({model_, dof, initial_configuration(model_)}, Constraints::All);
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(dof.scalar_count);
   for (int i = 0; i < dof.node_count; ++i) velocity.segment<6>(dof.first[i]) = velocity_[i];
   for (std::size_t j = 0; j < rates_.size(); ++j)
@@ -125,10 +122,7 @@ void InitialVelocity::satisfy_closures() {
     if (dof.slave_joint[i] < 0) velocity_[i] = velocity.segment<6>(dof.first[i]);
   for (std::size_t j = 0; j < rates_.size(); ++j)
     rates_[j] = velocity.segment(dof.first[dof.variable_of_joint(static_cast<int>(j))], rates_[j].size()).eval();
-  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) {
-    const Coordinate& following = model_.coordinates[mimic.coordinate];
-    rates_[following.joint][0] = mimic_ratio(following) * rates_[model_.coordinates[following.mimicked].joint][0];
-  }
+  set_follower_rates(model_, model_.initial_released, rates_);
   for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) follow(j, ReleasedVector(rates_[j]));
 }
 
@@ -201,15 +195,16 @@ void InitialVelocity::set_beam(int link) {
 
 double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given) const {
   if (coordinate.mimicked >= 0) {
+    const double ratio = follower_ratio(model_, coordinate, model_.initial_released);
     const auto from_field = field_rates_.find(coordinate.mimicked);
     if (from_field != field_rates_.end()) {
       is_given = true;
-      return mimic_ratio(coordinate) * from_field->second;
+      return ratio * from_field->second;
     }
     // A coordinate that follows one of another joint is given by it, whether that one moves or not.
     const bool is_own = coordinate.is_coupled;
     bool is_master_given = false;
-    const double rate = mimic_ratio(coordinate) * given_rate(model_.coordinates[coordinate.mimicked], is_master_given);
+    const double rate = ratio * given_rate(model_.coordinates[coordinate.mimicked], is_master_given);
     is_given = is_given || is_master_given || !is_own;
     return rate;
   }
@@ -231,11 +226,6 @@ bool InitialVelocity::given_rates(const JointChain& chain, ReleasedVector& rates
     for (int c = 0; c < released_count(model_.joints[j].kind); ++c)
       rates[used++] = given_rate(model_.coordinates[model_.first_coordinate[j] + c], is_given);
   return is_given;
-}
-
-double InitialVelocity::mimic_ratio(const Coordinate& coordinate) const {
-  const int master = model_.coordinates[coordinate.mimicked].joint;
-  return coordinate.mimic.derivative(model_.initial_released[master].displacement[0]);
 }
 
 ReleasedVector InitialVelocity::field_rates(const JointChain& chain, const Vector6& target) {
@@ -260,7 +250,7 @@ ReleasedVector InitialVelocity::field_rates(const JointChain& chain, const Vecto
   // travel.
   const Coordinate& first = model_.coordinates[model_.first_coordinate[chain.first_map]];
   if (!first.is_coupled) return least_squares(columns, relative);
-  const double ratio = mimic_ratio(first);
+  const double ratio = follower_ratio(model_, first, model_.initial_released);
   const Vector6 motion = columns.col(1) + ratio * columns.col(0);
   const double rate = motion.dot(relative) / motion.squaredNorm();
   ReleasedVector rates(2);

@@ -1,10 +1,7 @@
 #include <algorithm>
 
 #include "building/passes.h"
-#include "building/spatial_inertia.h"
-#include "joints/closure_jacobian.h"
-#include "joints/closure_maps.h"
-#include "joints/joint_kinematics.h"
+#include "building/tree_inertia.h"
 #include "math/dense_eigenpairs.h"
 #include "math/least_squares.h"
 
@@ -21,15 +18,9 @@ class LoopInertias {
   LoopInertias(const std::vector<int>& parents, const Model& model)
       : parents_(parents),
         model_(model),
-        joint_of_(model.nodes.size(), -1),
+        tree_(parents, model),
         followers_(model.coordinates.size()),
         out_(model.coordinates.size()) {
-    for (std::size_t j = 0; j < model.joints.size(); ++j) {
-      const JointMap& joint = model.joints[j];
-      // Sliders count as locked, and so do joints that close loops at the ends of beams.
-      if (joint.kind != JointMapKind::Slide && parents[joint.slave] == joint.master)
-        joint_of_[joint.slave] = static_cast<int>(j);
-    }
     for (std::size_t i = 0; i < model.coordinates.size(); ++i)
       if (model.coordinates[i].mimicked >= 0) followers_[model.coordinates[i].mimicked].push_back(static_cast<int>(i));
   }
@@ -42,47 +33,25 @@ class LoopInertias {
   }
 
  private:
-  /// One of the coordinates that move with an unknown of a group: that unknown, or one that follows it.
-  struct Member {
-    int unknown;     // index in the group
-    int node;        // that it moves
-    Vector6 motion;  // of that node {v, w}, world axes, per unit of the scaled unknown
-  };
-
   /// The unit of an unknown, so that all of them have the same size.
   double scale(int coordinate) const {
     return is_rotation(model_, model_.coordinates[coordinate]) ? 1.0 : model_.length_scale;
   }
   double ratio(int follower) const {
-    const Coordinate& coordinate = model_.coordinates[follower];
-    const int master = model_.coordinates[coordinate.mimicked].joint;
-    return coordinate.mimic.derivative(model_.initial_released[master].displacement[0]);
-  }
-  /// Motion of a joint's slave {v, w} per unit of each coordinate.
-  ReleasedColumns columns_of(int joint) const {
-    const JointMap& map = model_.joints[joint];
-    FoldMaps maps;
-    variational_maps(map, joint_pose(map, model_.nodes, model_.initial_released[joint]), Vector6::Zero(), maps);
-    return maps.right;
-  }
-  Vector6 seen_at(Vector6 motion, int from, int to) const {
-    motion.head<3>() += Vector3(motion.tail<3>()).cross(model_.nodes[to].position - model_.nodes[from].position);
-    return motion;
+    return follower_ratio(model_, model_.coordinates[follower], model_.initial_released);
   }
 
   /// Scaled constraints by scaled coordinates. Columns of prescribed and following coordinates are empty.
   ConstraintRows jacobian() const {
     std::vector<Eigen::Triplet<double>> entries;
     int row = 0;
-    for (const LoopClosure& closure : model_.closures)
-      for (const ClosureConstraint& constraint : closure.constraints) {
-        const NodePose parent = closure.parent < 0 ? NodePose() : model_.nodes[closure.parent];
-        const ClosureRows own = closure_rows(closure, constraint, {parent, model_.nodes[closure.child]});
-        const double unit = constraint.kind == ClosureConstraint::Kind::Gap ? 1 / model_.length_scale : 1;
-        add_way(closure.child, unit * own.child, row, entries);
-        if (closure.parent >= 0) add_way(closure.parent, unit * own.parent, row, entries);
-        ++row;
-      }
+    for_each_constraint(model_, Constraints::WithMultipliers, [&](const auto& closure, const auto& constraint) {
+      const ClosureRows own = closure_rows(closure, constraint, closure_poses(closure, model_.nodes));
+      const double unit = 1 / constraint_scale(model_, constraint);
+      add_way(closure.child, unit * own.child, row, entries);
+      if (closure.parent >= 0) add_way(closure.parent, unit * own.parent, row, entries);
+      ++row;
+    });
     ConstraintRows out(row, static_cast<Eigen::Index>(model_.coordinates.size()));
     out.setFromTriplets(entries.begin(), entries.end());
     return out;
@@ -92,11 +61,12 @@ class LoopInertias {
   /// node's motion.
   void add_way(int end, const Vector6& by_node, int row, std::vector<Eigen::Triplet<double>>& entries) const {
     for (int node = end; node >= 0; node = parents_[node]) {
-      if (joint_of_[node] < 0) continue;
-      const ReleasedColumns columns = columns_of(joint_of_[node]);
+      const int joint = tree_.joint_of(node);
+      if (joint < 0) continue;
+      const ReleasedColumns columns = tree_.columns_of(joint);
       for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        int coordinate = model_.first_coordinate[joint_of_[node]] + static_cast<int>(k);
-        double value = by_node.dot(seen_at(columns.col(k), node, end));
+        int coordinate = model_.first_coordinate[joint] + static_cast<int>(k);
+        double value = by_node.dot(tree_.seen_at(columns.col(k), node, end));
         if (model_.coordinates[coordinate].mimicked >= 0) {
           value *= ratio(coordinate);
           coordinate = model_.coordinates[coordinate].mimicked;
@@ -106,56 +76,31 @@ class LoopInertias {
     }
   }
 
-  std::vector<Member> members_of(const ConstraintGroup& group) const {
-    std::vector<Member> members;
+  /// The motions of the unknowns of a group, and of the coordinates that follow them.
+  std::vector<TreeMotion> motions_of(const ConstraintGroup& group) const {
+    std::vector<TreeMotion> motions;
     for (std::size_t u = 0; u < group.columns.size(); ++u) {
       const int unknown = group.columns[u];
       const auto add = [&](int coordinate, double factor) {
         const Coordinate& own = model_.coordinates[coordinate];
         const int slave = model_.joints[own.joint].slave;
-        if (joint_of_[slave] == own.joint)
-          members.push_back({static_cast<int>(u), slave, factor * columns_of(own.joint).col(own.component)});
+        if (tree_.joint_of(slave) == own.joint)
+          motions.push_back({static_cast<int>(u), slave, factor * tree_.columns_of(own.joint).col(own.component)});
       };
       add(unknown, scale(unknown));
       for (const int follower : followers_[unknown]) add(follower, scale(unknown) * ratio(follower));
     }
-    return members;
+    return motions;
   }
 
-  bool hangs_on(int node, int inboard) const {
-    while (node > inboard) node = parents_[node];  // parents come before their children
-    return node == inboard;
-  }
-
-  Eigen::MatrixXd mass_matrix(const ConstraintGroup& group) {
-    sum_inertias();
+  Eigen::MatrixXd mass_matrix(const ConstraintGroup& group) const {
     const auto size = static_cast<Eigen::Index>(group.columns.size());
-    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(size, size);
-    const std::vector<Member> members = members_of(group);
-    for (const Member& outer : members) {
-      const Vector6 momentum = outboard_[outer.node] * outer.motion;
-      for (const Member& inner : members) {
-        if (!hangs_on(outer.node, inner.node)) continue;
-        const double entry = momentum.dot(seen_at(inner.motion, inner.node, outer.node));
-        mass(outer.unknown, inner.unknown) += entry;
-        if (inner.node != outer.node) mass(inner.unknown, outer.unknown) += entry;
-      }
-    }
+    Eigen::MatrixXd mass = tree_.mass_matrix(motions_of(group), size);
     for (Eigen::Index u = 0; u < size; ++u) {
       const int coordinate = group.columns[static_cast<std::size_t>(u)];
       mass(u, u) += armature(model_, model_.coordinates[coordinate]) * scale(coordinate) * scale(coordinate);
     }
     return mass;
-  }
-
-  /// Inertia of all that hangs on each node, about the node.
-  void sum_inertias() {
-    if (!outboard_.empty()) return;
-    for (std::size_t i = 0; i < model_.nodes.size(); ++i)
-      outboard_.push_back(own_inertia(model_.inertias[i], model_.nodes[i].rotation));
-    for (std::size_t i = outboard_.size(); i-- > 0;)
-      if (const int parent = parents_[i]; parent >= 0)
-        outboard_[parent] += moved(outboard_[i], model_.nodes[i].position - model_.nodes[parent].position);
   }
 
   void add(const ConstraintGroup& group) {
@@ -184,9 +129,8 @@ class LoopInertias {
 
   const std::vector<int>& parents_;
   const Model& model_;
-  std::vector<int> joint_of_;                // per node: joint of the tree that moves it, or -1
+  TreeInertia tree_;
   std::vector<std::vector<int>> followers_;  // per coordinate
-  std::vector<SpatialInertia> outboard_;     // per node
   std::vector<InLoops> out_;
 };
 

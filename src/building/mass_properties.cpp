@@ -3,6 +3,7 @@
 #include <limits>
 #include <unordered_set>
 
+#include "joints/kinematics.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -123,8 +124,7 @@ void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
     const Coordinate& follower = model.coordinates[i];
     if (follower.mimicked < 0 || !own[i].is_anything || own[follower.mimicked].is_anything) continue;
     MovedInertia& leader = moved[follower.mimicked];
-    const int joint = model.coordinates[follower.mimicked].joint;
-    const double ratio = follower.mimic.derivative(model.initial_released[joint].displacement[0]);
+    const double ratio = follower_ratio(model, follower, model.initial_released);
     leader.inertia = (leader.is_anything ? leader.inertia : 0) + ratio * ratio * own[i].inertia;
     leader.is_anything = leader.inertia > 0;
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "joints/kinematics.h"
+
 namespace flexarm {
 namespace {
 
@@ -23,17 +25,6 @@ NodePose pose_of(const ArticulatedBodies& bodies, int node) {
 
 ClosurePoses poses_of(const LoopClosure& closure, const ArticulatedBodies& bodies) {
   return {pose_of(bodies, closure.parent), pose_of(bodies, closure.child)};
-}
-
-double constraint_scale(const ClosureConstraint& constraint, const Model& model) {
-  return constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
-}
-
-template <class Visit>
-void for_each_constraint(const Model& model, const Visit& visit) {
-  int row = 0;
-  for (const LoopClosure& closure : model.closures)
-    for (const ClosureConstraint& constraint : closure.constraints) visit(row++, closure, constraint);
 }
 
 /// A vector that is fixed to a node, with its first and second derivatives; world axes.
@@ -84,7 +75,7 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
   for (std::size_t column = 0; column < roots_.size(); ++column)
     root_column_[roots_[column]] = static_cast<int>(column);
   for (const Follower& follower : followers_) root_column_[follower.rate] = root_column_[follower.leader_rate];
-  for_each_constraint(model, [&](int, const LoopClosure&, const ClosureConstraint&) { ++rows_; });
+  for_each_constraint(model, Constraints::WithMultipliers, [&](const auto&, const auto&) { ++rows_; });
   closure_forces_.assign(model.closures.size(), Vector6::Zero());
   any_ = !motions_.empty() || !followers_.empty() || rows_ > 0;
   if (!any_) return;
@@ -144,13 +135,15 @@ void DependentRates::follow(std::vector<Released>& released, double* rates) {
 /// Finds the violations of all constraints, and their derivatives by the roots.
 void DependentRates::find_constraints(const ArticulatedBodies& bodies) {
   rows_of_rates_.setZero();
-  for_each_constraint(model_, [&](int row, const LoopClosure& closure, const ClosureConstraint& constraint) {
+  int row = 0;
+  for_each_constraint(model_, Constraints::WithMultipliers, [&](const auto& closure, const auto& constraint) {
     const ClosurePoses poses = poses_of(closure, bodies);
     const ClosureRows rows = closure_rows(closure, constraint, poses);
-    const double scale = constraint_scale(constraint, model_);
+    const double scale = constraint_scale(model_, constraint);
     values_[row] = closure_value(closure, constraint, poses) / scale;
     bodies.add_power(closure.child, rows.child / scale, rows_of_rates_.col(row).data());
     bodies.add_power(closure.parent, rows.parent / scale, rows_of_rates_.col(row).data());
+    ++row;
   });
   jacobian_.setZero();
   for (int k = 0; k < rates_; ++k) jacobian_.col(root_column_[k]) += factors_[k] * rows_of_rates_.row(k).transpose();
@@ -250,7 +243,7 @@ double DependentRates::find_curvature(const LoopClosure& closure, const ClosureC
   }
   const double change =
       other.change.dot(normal.value) + 2 * other.rate.dot(normal.rate) + other.value.dot(normal.change);
-  return change / constraint_scale(constraint, model_);
+  return change / constraint_scale(model_, constraint);
 }
 
 void DependentRates::accelerate(std::size_t stage, const double* efforts, const double* armatures,
@@ -262,8 +255,9 @@ void DependentRates::accelerate(std::size_t stage, const double* efforts, const 
   change_ = follower_bends_;
   if (rows_ > 0) {
     bodies.set_accelerations(change_.data());
-    for_each_constraint(model_, [&](int row, const LoopClosure& closure, const ClosureConstraint& constraint) {
-      values_[row] = find_curvature(closure, constraint, bodies);
+    int row = 0;
+    for_each_constraint(model_, Constraints::WithMultipliers, [&](const auto& closure, const auto& constraint) {
+      values_[row++] = find_curvature(closure, constraint, bodies);
     });
     solve_loops(values_);
     for (int i = 0; i < rows_; ++i)
@@ -311,7 +305,7 @@ void DependentRates::add_closure_forces(ArticulatedBodies& bodies) {
     on_child.setZero();
     for (const ClosureConstraint& constraint : closure.constraints) {
       const ClosureRows rows = closure_rows(closure, constraint, poses);
-      const double force = right_[row++] / constraint_scale(constraint, model_);
+      const double force = right_[row++] / constraint_scale(model_, constraint);
       on_child += force * rows.child, on_parent += force * rows.parent;
     }
     if (closure.child >= 0) bodies.add_force(closure.child, on_child);
@@ -350,7 +344,7 @@ double DependentRates::largest_opening(const ArticulatedBodies& bodies) const {
   for (const LoopClosure& closure : model_.closures)
     for (const ClosureConstraint& constraint : closure.implied)
       largest = std::max(largest, std::abs(closure_value(closure, constraint, poses_of(closure, bodies))) /
-                                      constraint_scale(constraint, model_));
+                                      constraint_scale(model_, constraint));
   return largest;
 }
 

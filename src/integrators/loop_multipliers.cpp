@@ -4,15 +4,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "joints/kinematics.h"
+
 namespace flexarm {
 
 LoopMultipliers::LoopMultipliers(const StepConfiguration& configuration) : configuration_(configuration) {
   for (const LoopClosure& closure : configuration.model().closures)
     values_.push_back(ReleasedVector::Zero(static_cast<Eigen::Index>(closure.constraints.size())));
-}
-
-ClosurePoses LoopMultipliers::poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const {
-  return {closure.parent < 0 ? NodePose() : nodes[closure.parent], nodes[closure.child]};
 }
 
 template <class Visit>
@@ -44,7 +42,8 @@ double LoopMultipliers::end_weight() const {
 Vector6 LoopMultipliers::on_child(int closure) const {
   assert(closure >= 0 && static_cast<std::size_t>(closure) < values_.size());
   const LoopClosure& loop = configuration_.model().closures[closure];
-  const ClosurePoses begin = poses(loop, configuration_.begin()), end = poses(loop, configuration_.end());
+  const ClosurePoses begin = closure_poses(loop, configuration_.begin()),
+                     end = closure_poses(loop, configuration_.end());
   Vector6 sum = Vector6::Zero();
   ClosureMaps maps;
   for (std::size_t i = 0; i < loop.constraints.size(); ++i) {
@@ -59,7 +58,8 @@ void LoopMultipliers::evaluate(Balance& balance) const {
   ClosureMaps maps;
   for (int k = 0; k < static_cast<int>(closures.size()); ++k) {
     const LoopClosure& closure = closures[k];
-    const ClosurePoses begin = poses(closure, configuration_.begin()), end = poses(closure, configuration_.end());
+    const ClosurePoses begin = closure_poses(closure, configuration_.begin()),
+                       end = closure_poses(closure, configuration_.end());
     for (int i = 0; i < static_cast<int>(closure.constraints.size()); ++i) {
       closure_maps(closure, closure.constraints[i], begin, end, end_weight(), maps);
       balance.residual.add_closure(k, i, values_[k][i], maps);
@@ -78,8 +78,8 @@ LoopMultipliers::Opening LoopMultipliers::largest_opening() const {
   for (int k = 0; k < static_cast<int>(model.closures.size()); ++k) {
     const LoopClosure& closure = model.closures[k];
     for (const ClosureConstraint& constraint : closure.implied) {
-      const double scale = constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
-      const double size = std::abs(closure_value(closure, constraint, poses(closure, configuration_.end()))) / scale;
+      const double value = closure_value(closure, constraint, closure_poses(closure, configuration_.end()));
+      const double size = std::abs(value) / constraint_scale(model, constraint);
       if (size > largest.size) largest = {size, k};
     }
   }

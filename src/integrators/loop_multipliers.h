@@ -36,7 +36,6 @@ class LoopMultipliers {
   double end_weight() const;
 
  private:
-  ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;
   /// Calls visit(closure, index of the multiplier in it, equation) for all multipliers.
   template <class Visit>
   void for_each(const Visit& visit) const;

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/cayley.h"
 #include "math/pi.h"
 #include "math/so3.h"
@@ -127,12 +127,7 @@ void StepConfiguration::update(const Eigen::VectorXd& increment) {
 }
 
 void StepConfiguration::set_slaves() {
-  for (const Coordinate& coordinate : model_.coordinates)
-    if (coordinate.mimicked >= 0) {
-      const Coordinate& master = model_.coordinates[coordinate.mimicked];
-      released_[coordinate.joint].displacement[coordinate.component] =
-          coordinate.mimic.value(released_[master.joint].displacement[master.component]);
-    }
+  place_followers(model_, released_);
   off_line_joint_ = -1;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];

@@ -7,8 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "joints/closure_maps.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/pi.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
@@ -72,8 +71,8 @@ void check(const Model& model, const Coordinate& coordinate, const CoordinateSta
 }
 
 /// Sets the given positions and velocities, and those of the mimic coordinates that follow.
-void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state,
-                     const std::vector<CoordinateState>& coordinates, Motion& motion) {
+void set_coordinates(const Model& model, const State& state, const std::vector<CoordinateState>& coordinates,
+                     Motion& motion) {
   std::set<std::size_t> named;
   for (const CoordinateState& wanted : coordinates) {
     const Coordinate& coordinate = entry(model.coordinates, wanted.coordinate, "joint coordinate");
@@ -92,15 +91,8 @@ void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const Stat
       released.displacement[component] = *wanted.position - carried_translation(joint, state)[component];
     }
   }
-  // From the back, since masters come behind their followers in this list.
-  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
-    const Coordinate& follower = model.coordinates[mimic->coordinate];
-    const Coordinate& master = model.coordinates[follower.mimicked];
-    const double position = motion.released[master.joint].displacement[master.component];
-    motion.released[follower.joint].displacement[follower.component] = follower.mimic.value(position);
-    motion.rates[follower.joint][follower.component] =
-        follower.mimic.derivative(position) * motion.rates[master.joint][master.component];
-  }
+  place_followers(model, motion.released);
+  set_follower_rates(model, motion.released, motion.rates);
 }
 
 Vector6 carried_velocity(const NodePose& parent, const Vector6& velocity, const Vector3& point) {
@@ -196,17 +188,14 @@ void close_velocities(const Model& model, const DegreesOfFreedom& dof, const Sta
 
 /// @throws std::invalid_argument if a loop of rigid links is open.
 void check_positions(const Model& model, const Motion& motion) {
-  for (const LoopClosure& closure : model.closures)
-    for (const auto* constraints : {&closure.constraints, &closure.implied})
-      for (const ClosureConstraint& constraint : *constraints) {
-        const bool is_gap = constraint.kind == ClosureConstraint::Kind::Gap;
-        const NodePose& parent = closure.parent < 0 ? kWorld : motion.poses[closure.parent];
-        const double value = closure_value(closure, constraint, {parent, motion.poses[closure.child]});
-        if (std::abs(value) > kClosed * (is_gap ? model.length_scale : 1.0))
-          throw std::invalid_argument(
-              fmt::format("the loop that joint '{}' closes opens, by {:.3g} {}: give the positions of all its joints",
-                          closure.name, value, is_gap ? "m" : "rad"));
-      }
+  for_each_constraint(model, Constraints::All, [&](const LoopClosure& closure, const ClosureConstraint& constraint) {
+    const double value = closure_value(closure, constraint, closure_poses(closure, motion.poses));
+    const bool is_gap = constraint.kind == ClosureConstraint::Kind::Gap;
+    if (std::abs(value) > kClosed * constraint_scale(model, constraint))
+      throw std::invalid_argument(
+          fmt::format("the loop that joint '{}' closes opens, by {:.3g} {}: give the positions of all its joints",
+                      closure.name, value, is_gap ? "m" : "rad"));
+  });
 }
 
 /// @throws std::invalid_argument if the velocities open a loop.
@@ -301,7 +290,7 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   close_velocities(model, dof, state, closed);
   Motion after = closed;
   if (!coordinates.empty()) {
-    set_coordinates(model, dof, state, coordinates, after);
+    set_coordinates(model, state, coordinates, after);
     Follower(model, dof, closed, after).follow();
   }
   check_positions(model, after);

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/element_matrices.h"
-#include "analysis/linearised_motion.h"
-#include "joints/closure_maps.h"
-#include "joints/joint_kinematics.h"
+#include "analysis/folded_sums.h"
 #include "simulation/observables.h"
 
 namespace flexarm {
@@ -18,100 +15,32 @@ namespace {
 constexpr double kGive = 1e-4;
 constexpr int kRounds = 6;
 
-double unit_of(const Model& model, const ClosureConstraint& constraint) {
-  return constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
-}
-
-ClosurePoses ends(const LoopClosure& closure, const std::vector<NodePose>& poses) {
-  return {closure.parent < 0 ? kWorld : poses[closure.parent], poses[closure.child]};
-}
-
 double rate_of(const LoopClosure& closure, const ClosureRows& rows, const std::vector<Vector6>& velocities) {
   const double of_child = rows.child.dot(velocities[closure.child]);
   return closure.parent < 0 ? of_child : of_child + rows.parent.dot(velocities[closure.parent]);
 }
 
-/// The tangent's diagonal entry of a released coordinate.
-double& diagonal(const Model& model, const DegreesOfFreedom& dof, SparseTangent& tangent, int joint, int component) {
-  const int count = released_count(model.joints[joint].kind);
-  return tangent.diagonal_block(dof.variable_of_joint(joint))[component * count + component];
-}
-
-/// Maps of all joints at a state, for a zero residual.
-JointMaps joint_maps(const Model& model, const DegreesOfFreedom& dof, const State& state) {
-  JointMaps maps;
-  std::vector<NodePose> nodes;
-  for (const NodeState& node : state.nodes) nodes.push_back(node_pose(node));
-  maps.folds.resize(model.joints.size());
-  maps.slides.resize(model.joints.size());
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const JointMap& joint = model.joints[j];
-    if (joint.kind == JointMapKind::Slide)
-      slide_variational_maps(model.slide_lines[joint.line], nodes, state.released[j].displacement[0], Vector6::Zero(),
-                             maps.slides[j]);
-    else
-      variational_maps(joint, joint_pose(joint, nodes, state.released[j]), Vector6::Zero(), maps.folds[j]);
-  }
-  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) {
-    const Coordinate& following = model.coordinates[mimic.coordinate];
-    const int master = model.coordinates[following.mimicked].joint;
-    const double slope = following.mimic.derivative(state.released[master].displacement[0]);
-    maps.mimics.push_back({slope, slope, 0});
-  }
-  return maps;
-}
-
-/// Adds the mass matrix of nodes and coordinates, before slaves are folded. Of the rotors it contains those that turn
-/// with their coordinates.
-void add_mass(const Model& model, const DegreesOfFreedom& dof, const State& state, SparseTangent& mass) {
-  for_each_element(model.beams,
-                   [&](const auto& element) { add_element(mass, element.first_block, mass_matrix(element, state)); });
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    const NodalInertia& inertia = model.inertias[i];
-    const Matrix3 rotation = state.nodes[i].orientation.toRotationMatrix();
-    Eigen::Map<Matrix6> block(mass.diagonal_block(static_cast<int>(i)));
-    block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
-    block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
-  }
-  for (const ActuatorTerms& terms : actuator_terms(model, state))
-    diagonal(model, dof, mass, terms.joint, terms.component) += terms.mass;
-}
-
-/// Folds slaves into their masters, and coordinates that follow others into these.
-void fold(const Model& model, const JointMaps& maps, SparseTangent& tangent) {
-  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
-    if (model.joints[j].kind == JointMapKind::Slide)
-      tangent.fold(j, maps.slides[j]);
-    else
-      tangent.fold(j, maps.folds[j]);
-  }
-  tangent.fold_mimics(maps.mimics);
-  tangent.finish();
-}
-
 /// The mass matrix M and the constraint matrix B in one system, for all unknowns of a step.
 class ClosingImpulses {
  public:
-  ClosingImpulses(const Model& model, const DegreesOfFreedom& dof, const State& state,
-                  const std::vector<NodePose>& poses)
-      : model_(model),
-        dof_(dof),
-        state_(state),
-        poses_(poses),
-        maps_(joint_maps(model, dof, state)),
-        system_(model, dof) {
+  ClosingImpulses(const Kinematics& kinematics, const State& state)
+      : kinematics_(kinematics),
+        model_(kinematics.model()),
+        dof_(kinematics.degrees_of_freedom()),
+        system_(model_, dof_) {
     system_.set_zero();
-    add_mass(model, dof, state, system_);
+    add_mass(kinematics, state, system_);
     ClosureMaps maps;
-    for (int k = 0; k < static_cast<int>(model.closures.size()); ++k)
-      for (int i = 0; i < count(k); ++i) {
-        const LoopClosure& closure = model.closures[k];
-        closure_maps(closure, closure.constraints[i], ends(closure, poses), ends(closure, poses), 1, maps);
-        system_.add_closure(k, i, 0, maps);
-        const double unit = unit_of(model, closure.constraints[i]) / model.length_scale;
-        system_.diagonal_block(dof.variable_of_closure(k))[i * count(k) + i] -= kGive * unit * unit / mass_of(model);
-      }
-    fold(model, maps_, system_);
+    for_each([&](int k, int i, int) {
+      const LoopClosure& closure = model_.closures[k];
+      const ClosurePoses poses = closure_poses(closure, kinematics.nodes());
+      closure_maps(closure, closure.constraints[i], poses, poses, 1, maps);
+      system_.add_closure(k, i, 0, maps);
+      const double unit = constraint_scale(model_, closure.constraints[i]) / model_.length_scale;
+      const int variable = dof_.variable_of_closure(k);
+      system_.diagonal_block(variable)[i * dof_.size[variable] + i] -= kGive * unit * unit / mass_of(model_);
+    });
+    fold(kinematics, system_);
     is_solvable_ = system_.factorise();
   }
 
@@ -119,46 +48,40 @@ class ClosingImpulses {
   bool close(const std::vector<Vector6>& velocities, VelocityChange& change) {
     if (!is_solvable_) return false;
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(dof_.unknowns);
-    for (int k = 0; k < static_cast<int>(model_.closures.size()); ++k)
-      for (int i = 0; i < count(k); ++i) {
-        const LoopClosure& closure = model_.closures[k];
-        const ClosureRows rows = closure_rows(closure, closure.constraints[i], ends(closure, poses_));
-        solution[dof_.equation[dof_.first[dof_.variable_of_closure(k)] + i]] = -rate_of(closure, rows, velocities);
-      }
+    for_each([&](int k, int i, int equation) {
+      const LoopClosure& closure = model_.closures[k];
+      const ClosurePoses poses = closure_poses(closure, kinematics_.nodes());
+      solution[equation] = -rate_of(closure, closure_rows(closure, closure.constraints[i], poses), velocities);
+    });
     if (!system_.solve(solution)) return false;
     add(solution, change);
     return true;
   }
 
  private:
-  int count(int closure) const { return static_cast<int>(model_.closures[closure].constraints.size()); }
-
-  void add(const Eigen::VectorXd& solution, VelocityChange& change) const {
-    const auto value = [&](int scalar) { return dof_.equation[scalar] < 0 ? 0.0 : solution[dof_.equation[scalar]]; };
-    std::vector<ReleasedVector> rates;
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      ReleasedVector& own = rates.emplace_back(released_count(model_.joints[j].kind));
-      for (int k = 0; k < own.size(); ++k) own[k] = value(dof_.first[dof_.variable_of_joint(j)] + k);
+  /// Calls visit(closure, index of the constraint in it, equation) for all multipliers.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int k = 0; k < static_cast<int>(model_.closures.size()); ++k) {
+      const int first = dof_.first[dof_.variable_of_closure(k)];
+      for (int i = 0; i < dof_.size[dof_.variable_of_closure(k)]; ++i) visit(k, i, dof_.equation[first + i]);
     }
-    for (std::size_t m = 0; m < dof_.mimics.size(); ++m) {
-      const Coordinate& following = model_.coordinates[dof_.mimics[m].coordinate];
-      const Coordinate& leading = model_.coordinates[following.mimicked];
-      rates[following.joint][following.component] = maps_.mimics[m].right * rates[leading.joint][leading.component];
-    }
-    std::vector<Vector6> nodes(model_.nodes.size());
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (int k = 0; k < 6; ++k) nodes[i][k] = value(dof_.first[i] + k);
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j)
-      nodes[model_.joints[j].slave] = slave_velocity(model_, j, poses_, state_.released[j], nodes).with(rates[j]);
-    for (std::size_t i = 0; i < nodes.size(); ++i) change.nodes[i] += nodes[i];
-    for (std::size_t j = 0; j < rates.size(); ++j) change.rates[j] += rates[j];
   }
 
+  void add(const Eigen::VectorXd& solution, VelocityChange& change) const {
+    Eigen::VectorXd scalars = Eigen::VectorXd::Zero(dof_.scalar_count);
+    for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
+      if (dof_.equation[scalar] >= 0) scalars[scalar] = solution[dof_.equation[scalar]];
+    kinematics_.complete(scalars);
+    for (std::size_t i = 0; i < change.nodes.size(); ++i) change.nodes[i] += scalars.segment<6>(dof_.first[i]);
+    for (std::size_t j = 0; j < change.rates.size(); ++j)
+      change.rates[j] +=
+          scalars.segment(dof_.first[dof_.variable_of_joint(static_cast<int>(j))], change.rates[j].size());
+  }
+
+  const Kinematics& kinematics_;
   const Model& model_;
   const DegreesOfFreedom& dof_;
-  const State& state_;
-  const std::vector<NodePose>& poses_;
-  JointMaps maps_;
   SparseTangent system_;
   bool is_solvable_ = false;
 };
@@ -191,26 +114,23 @@ LoopOpening opening_of(const Model& model, const std::vector<NodePose>& poses, c
   for (const Vector6& velocity : velocities)
     opening.fastest =
         std::max({opening.fastest, velocity.head<3>().norm() / model.length_scale, velocity.tail<3>().norm()});
-  for (std::size_t k = 0; k < model.closures.size(); ++k) {
-    const LoopClosure& closure = model.closures[k];
-    for (const auto* constraints : {&closure.constraints, &closure.implied})
-      for (const ClosureConstraint& constraint : *constraints) {
-        const ClosureRows rows = closure_rows(closure, constraint, ends(closure, poses));
-        const double rate = std::abs(rate_of(closure, rows, velocities)) / unit_of(model, constraint);
-        if (rate > opening.rate) opening.rate = rate, opening.closure = static_cast<int>(k);
-      }
-  }
+  for_each_constraint(model, Constraints::All, [&](const LoopClosure& closure, const ClosureConstraint& constraint) {
+    const ClosureRows rows = closure_rows(closure, constraint, closure_poses(closure, poses));
+    const double rate = std::abs(rate_of(closure, rows, velocities)) / constraint_scale(model, constraint);
+    if (rate > opening.rate) opening.rate = rate, opening.closure = static_cast<int>(&closure - model.closures.data());
+  });
   return opening;
 }
 
 VelocityChange closing_change(const Model& model, const DegreesOfFreedom& dof, const State& state,
                               const std::vector<Vector6>& velocities) {
   if (model.closures.empty()) return {};
-  std::vector<NodePose> poses;
-  for (const NodeState& node : state.nodes) poses.push_back(node_pose(node));
+  Configuration configuration = configuration_of(state);
+  const std::vector<NodePose> poses = configuration.nodes;
   LoopOpening opening = opening_of(model, poses, velocities);
   if (opening.is_round_off()) return {};
-  ClosingImpulses impulses(model, dof, state, poses);
+  const Kinematics kinematics(model, dof, std::move(configuration));
+  ClosingImpulses impulses(kinematics, state);
   VelocityChange best;
   for (int round = 0; round < kRounds && !opening.is_round_off(); ++round) {
     VelocityChange next = best.is_nothing() ? no_change(model) : best;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "elements/nodal_inertia.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 #include "math/cayley.h"
 #include "math/pi.h"
 #include "simulation/observables.h"
@@ -151,13 +151,7 @@ void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof
     if (rates.size() == 1) rates = steps_.rate_at_end<1>(scalar);
     for (int c = 0; c + 3 <= rates.size(); c += 3) rates.segment<3>(c) = steps_.rate_at_end<3>(vectors[c / 3]);
   }
-  // From the back, since an entry's master never follows in an earlier entry.
-  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
-    const Coordinate& following = model.coordinates[mimic->coordinate];
-    const Coordinate& followed = model.coordinates[following.mimicked];
-    rates_[following.joint][0] =
-        following.mimic.derivative(state.released[followed.joint].displacement[0]) * rates_[followed.joint][0];
-  }
+  set_follower_rates(model, state.released, rates_);
 }
 
 void OutputVelocities::set_slaves(const Model& model, const State& state) {
@@ -257,12 +251,7 @@ void PastMotion::go_back(const MotionView& view, int step, double begin) {
       released.displacement[coordinate.component] -= state.history.increments[step][equation];
     }
   }
-  // From the back, since an entry's master never follows in an earlier entry.
-  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
-    const Coordinate& following = model.coordinates[mimic->coordinate];
-    earlier_.released[following.joint].displacement[0] =
-        following.mimic.value(earlier_.released[model.coordinates[following.mimicked].joint].displacement[0]);
-  }
+  place_followers(model, earlier_.released);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const int slave = model.joints[j].slave;
     poses_[slave] = slave_pose(model, static_cast<int>(j), poses_, earlier_.released[j]);
