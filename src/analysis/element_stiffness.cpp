@@ -1,8 +1,8 @@
 #include "analysis/element_matrices.h"
 
 #include "elements/element_configuration.h"
-#include "elements/endpoint_beam.h"
 #include "elements/orders.h"
+#include "elements/static_beam.h"
 #include "math/so3.h"
 
 namespace flexarm {

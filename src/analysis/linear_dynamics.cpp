@@ -30,10 +30,8 @@ Model frozen(Model model, double time) {
 
 /// The static rule with the forces that the scheme's steps have at rest, and with local interpolation.
 Scheme resting(const Scheme& scheme) {
-  Scheme statics = statics_of(scheme);
+  Scheme statics = statics_of(with_local_strains(scheme));
   statics.tests_vary_strains = scheme.stress == StressRule::Conjugate;
-  statics.interpolation = Interpolation::Local;
-  statics.cayley_interpolation = false;
   return statics;
 }
 

@@ -34,12 +34,6 @@ bool depends_on_path(const Scheme& scheme) {
   return scheme.interpolation == Interpolation::Incremental || scheme.interpolation == Interpolation::Iterative;
 }
 
-Scheme with_local_strains(Scheme scheme) {
-  scheme.interpolation = Interpolation::Local;
-  scheme.cayley_interpolation = false;
-  return scheme;
-}
-
 class EquilibriumSearch {
  public:
   EquilibriumSearch(const Model& model, const Scheme& scheme, const StepSettings& settings, const State& state)
@@ -99,7 +93,7 @@ class EquilibriumSearch {
 
   /// Replaces the forces that the scheme stores by those of the equilibrium.
   void renew_forces() {
-    if (!state_.forces.empty()) state_.forces = system_.nodal_forces(state_);
+    if (!state_.study.forces.empty()) state_.study.forces = system_.nodal_forces(state_);
   }
 
  private:

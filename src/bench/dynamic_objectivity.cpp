@@ -24,7 +24,8 @@ Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, do
   state.nodes[last].angular_velocity.x() = mean + relative;
   for (std::size_t k = 0; k < element.mass_points.size() && !variant.scheme.nodal_rotary_inertia; ++k) {
     const auto& shape = element.mass_points[k].shape;
-    state.mass_points[element.first_mass_point + k].angular_velocity.x() = mean + relative * (shape[1] - shape[0]);
+    state.study.mass_points[element.first_mass_point + k].angular_velocity.x() =
+        mean + relative * (shape[1] - shape[0]);
   }
   for (StrainMemory& memory : state.strain_memory)
     memory.rate[3] = 2 * relative;  // rate of twist; the beam is 1 m long
@@ -38,8 +39,8 @@ Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, do
     if (variant.scheme.nodal_rotary_inertia)
       twisting.angular_velocity = now.nodes[last].angular_velocity.x() - now.nodes[first].angular_velocity.x();
     else
-      twisting.angular_velocity = now.mass_points[element.first_mass_point + 1].angular_velocity.x() -
-                                  now.mass_points[element.first_mass_point].angular_velocity.x();
+      twisting.angular_velocity = now.study.mass_points[element.first_mass_point + 1].angular_velocity.x() -
+                                  now.study.mass_points[element.first_mass_point].angular_velocity.x();
     out.value.push_back(twisting);
   });
   return out;

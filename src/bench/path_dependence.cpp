@@ -6,7 +6,7 @@
 #include "bench/scenes.h"
 #include "math/pi.h"
 #include "math/quadrature.h"
-#include "math/referenced_rotation.h"
+#include "study_schemes/referenced_rotation.h"
 
 namespace flexarm::bench {
 namespace {

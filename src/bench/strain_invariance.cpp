@@ -4,9 +4,9 @@
 
 #include "bench/scenes.h"
 #include "building/model_builder.h"
-#include "integrators/rotation_reference.h"
 #include "math/so3.h"
 #include "simulation/observables.h"
+#include "study_schemes/rotation_reference.h"
 
 namespace flexarm::bench {
 namespace {
@@ -45,7 +45,7 @@ std::vector<Vector3> curvatures(const Scheme& scheme, const Vector3& rigid) {
   }
   std::vector<Vector3> out;
   if (reference.is_used()) {
-    for (const PointRotation& point : state.stiffness_rotations) out.push_back(point.curvature);
+    for (const PointRotation& point : state.study.stiffness_rotations) out.push_back(point.curvature);
     return out;
   }
   std::array<Quaternion, kNodes> orientation;

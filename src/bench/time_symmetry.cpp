@@ -22,8 +22,8 @@ State reversed(State state) {
     node.angular_velocity *= -1;
     node.mean_spin *= -1;
   }
-  for (MassPointState& point : state.mass_points) point.angular_velocity *= -1;
-  for (Vector6& rate : state.strain_rates) rate *= -1;
+  for (MassPointState& point : state.study.mass_points) point.angular_velocity *= -1;
+  for (Vector6& rate : state.study.strain_rates) rate *= -1;
   state.history.clear();
   return state;
 }

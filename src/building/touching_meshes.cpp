@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "building/loaded_library.h"
 #include "flexarm/scene/resource_path.h"
+#include "math/loaded_library.h"
 #include "meshes/library.h"
 
 namespace flexarm {

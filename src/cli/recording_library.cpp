@@ -1,6 +1,6 @@
 #include "cli/recording_library.h"
 
-#include "building/loaded_library.h"
+#include "math/loaded_library.h"
 
 namespace flexarm::cli {
 

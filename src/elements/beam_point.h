@@ -1,5 +1,5 @@
 #pragma once
-/// What all beam kernels share: the nodes of an element over a step, strains at an integration point, and functions
+/// What all beam kernels share: the nodes of an element, strains at an integration point, and functions
 /// that add the internal forces of a point and their linearisation to the element's residual and tangent.
 ///
 /// Notation of the beam kernels (docs/notes/beam.md): s arc length of the undeformed line, ' derivative with respect to
@@ -8,11 +8,9 @@
 /// i; spin: infinitesimal rotation vector in world axes, d(Lambda) = hat(spin) Lambda.
 
 #include <array>
-#include <optional>
 #include <type_traits>
 
 #include "math/local_rotation.h"
-#include "math/referenced_rotation.h"
 #include "model/beam_element.h"
 
 namespace flexarm {
@@ -26,27 +24,20 @@ struct PointKinematicsT {
 };
 using PointKinematics = PointKinematicsT<double>;
 
-/// Nodal motion of an element over a step [t_n, t_{n+1}].
+/// Poses of an element's nodes in one configuration: in a step, the one at its end.
 template <int Nodes>
-struct ElementNodes {
-  std::array<Vector3, Nodes> begin, end;      ///< positions [m]
-  std::array<Quaternion, Nodes> orientation;  ///< at the end
-  std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
-  std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
-  std::array<Vector3, Nodes> velocity, acceleration;     ///< at the beginning [m/s, m/s^2]
-  Vector6 prestrain = Vector6::Zero();                   ///< subtracted from the strains
-  // For interpolations that measure rotations from a reference (all but the local one):
-  std::array<Vector3, Nodes> rotation_vector;
-  RotationParameters parameters = RotationParameters::Unscaled;
-  const InterpolatedRotation<double>* stiffness_reference = nullptr;  ///< per stiffness point of the element
-  const InterpolatedRotation<double>* mass_reference = nullptr;       ///< per mass point
+struct PlacedNodes {
+  std::array<Vector3, Nodes> end;  ///< positions [m]
+  std::array<Quaternion, Nodes> orientation;
+  Vector6 prestrain = Vector6::Zero();  ///< subtracted from the strains
 };
 
 /// Residual {f_i, phi_i} and its derivative with respect to {dr_j, spin_j}, node by node.
 template <int Nodes>
 struct ElementSystem {
   Eigen::Matrix<double, 6 * Nodes, 1> residual;
-  Eigen::Matrix<double, 6 * Nodes, 1> carried;  ///< residual with carried strains minus `residual`; see carry_strains()
+  Eigen::Matrix<double, 6 * Nodes, 1>
+      carried;  ///< residual with carried strains minus `residual`; see carried_strains()
   Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> tangent;
   double dissipated = 0;  ///< over the step [J]
 
@@ -57,29 +48,6 @@ struct ElementSystem {
     dissipated = 0;
   }
 };
-
-/// Interpolates rotations of an element, and their variation on request. `Nodes`: 2 to 5.
-template <int Nodes>
-class ElementRotations {
- public:
-  ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation);
-  /// `reference`: only for interpolations that have one. `generalised`: output, set only with variation.
-  InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
-                                        const InterpolatedRotation<double>* reference,
-                                        GeneralisedShapeFunctions<Nodes>& generalised) const;
-
- private:
-  std::optional<LocalRotations<Nodes>> local_;
-  std::optional<LocalRotationVariation<Nodes>> variation_;
-  std::optional<ReferencedRotations<Nodes>> referenced_;
-};
-
-/// Computes carried strains: the strains at an element's stiffness points after an update {dr, spin} of its nodes, to
-/// first order. The geometric part of the next tangent uses them in place of the strains of the new configuration,
-/// which contain spurious terms of second order (docs/notes/newton.md).
-template <int Nodes>
-void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
-                   const std::array<Vector6, Nodes>& update, Vector6* strains);
 
 template <int Nodes, typename S = double>
 Vector3T<S> interpolate(const NodalValues<Nodes, S>& weights, const std::array<Vector3T<S>, Nodes>& values) {
@@ -105,7 +73,7 @@ PointKinematicsT<S> point_kinematics(const InterpolatedRotation<S>& interpolated
 /// Returns a stiffness point at the end of a step. `rotation`: the interpolated one.
 template <int Nodes>
 PointKinematics end_kinematics(const typename BeamElement<Nodes>::StiffnessPoint& constants,
-                               const ElementNodes<Nodes>& nodes, const InterpolatedRotation<double>& rotation) {
+                               const PlacedNodes<Nodes>& nodes, const InterpolatedRotation<double>& rotation) {
   PointKinematics point =
       point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
   point.strain -= nodes.prestrain;
@@ -120,6 +88,28 @@ inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& poin
   d.block<3, 3>(0, 3) = transposed * so3::hat(point.tangent);
   d.bottomRightCorner<3, 3>() = transposed;
   return d;
+}
+
+/// Computes carried strains: the strains at an element's stiffness points after an update {dr, spin} of its nodes, to
+/// first order. The geometric part of the next tangent uses them in place of the strains of the new configuration,
+/// which contain spurious terms of second order (docs/notes/newton.md). `rotation_at(k, generalised)` returns the
+/// interpolated rotation at stiffness point k, and sets the generalised shape functions.
+template <int Nodes, class RotationAt>
+void carried_strains(const BeamElement<Nodes>& element, const PlacedNodes<Nodes>& nodes, const RotationAt& rotation_at,
+                     const std::array<Vector6, Nodes>& update, Vector6* strains) {
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    GeneralisedShapeFunctions<Nodes> generalised;
+    const InterpolatedRotation<double> rotation = rotation_at(k, generalised);
+    const PointKinematics point = end_kinematics<Nodes>(constants, nodes, rotation);
+    Eigen::Matrix<double, 9, 1> variation = Eigen::Matrix<double, 9, 1>::Zero();  // {dr', spin, spin'}
+    for (int i = 0; i < Nodes; ++i) {
+      variation.head<3>() += constants.derivative[i] * update[i].template head<3>();
+      variation.segment<3>(3) += generalised.values[i] * update[i].template tail<3>();
+      variation.tail<3>() += generalised.derivatives[i] * update[i].template tail<3>();
+    }
+    strains[k] = point.strain + strain_derivative(point) * variation;
+  }
 }
 
 /// Lagrange functions as test functions of the moment rows at a point.

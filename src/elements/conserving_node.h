@@ -3,10 +3,36 @@
 
 #include <cassert>
 
-#include "elements/beam_point.h"
-#include "elements/rotary_inertia.h"
+#include "flexarm/math/pose.h"
+#include "math/cayley.h"
+#include "math/so3.h"
 
 namespace flexarm {
+
+/// The average rule for a rotary inertia: the rate of its angular momentum is (Lambda_1 J W_1 - Lambda_0 J W_0) / h,
+/// with (W_0 + W_1) / 2 = Omega / h and the material increment Omega. `increment` is the spatial rotation increment
+/// (unscaled or tangent-scaled). `inverse_tangent` (T^{-1} or S^{-1}) maps a spin to the variation of `increment`; only
+/// the derivative needs it. S: a scalar or a pack.
+template <typename S>
+struct AverageRate {
+  Vector3T<S> angular_velocity;  ///< at the end, in the section's frame
+  Vector3T<S> moment;            ///< world axes
+  Matrix3T<S> derivative;        ///< d(moment)/d(spin)
+  Matrix3T<S> to_momentum;       ///< J d(Omega)/d(spin)
+
+  AverageRate(const Matrix3T<S>& inertia, const Matrix3T<S>& begin, const Matrix3T<S>& end,
+              const Vector3T<S>& increment, const Matrix3T<S>& inverse_tangent,
+              const Vector3T<S>& begin_angular_velocity, double step, bool with_derivative) {
+    angular_velocity = S(2 / step) * (begin.transpose() * increment) - begin_angular_velocity;
+    const Vector3T<S> begin_momentum = inertia * begin_angular_velocity, end_momentum = inertia * angular_velocity;
+    const Vector3T<S> momentum = end * end_momentum;
+    moment = S(1 / step) * (momentum - begin * begin_momentum);
+    if (!with_derivative) return;
+    to_momentum.noalias() = inertia.lazyProduct(Matrix3T<S>(begin.transpose().lazyProduct(inverse_tangent)));
+    derivative = S(2 / (step * step)) * end.lazyProduct(to_momentum);
+    derivative -= so3::hat(Vector3T<S>(S(1 / step) * momentum));
+  }
+};
 
 /// Mass [kg] and rotary inertia in the node's frame [kg m^2].
 template <typename S>

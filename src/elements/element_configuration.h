@@ -43,8 +43,9 @@ template <int Nodes>
 Vector6 centroid_strain(const BeamElement<Nodes>& element, const ElementConfiguration<Nodes>& nodes,
                         const LocalRotations<Nodes>& local, const State& state, int k) {
   const auto& point = element.stiffness_points[k];
-  return point_kinematics(point_rotation(local, point, state.stiffness_rotations, element.first_stiffness_point + k),
-                          interpolate<Nodes>(point.derivative, nodes.position), point.reference_strain)
+  return point_kinematics(
+             point_rotation(local, point, state.study.stiffness_rotations, element.first_stiffness_point + k),
+             interpolate<Nodes>(point.derivative, nodes.position), point.reference_strain)
       .strain;
 }
 

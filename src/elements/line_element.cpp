@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-std::vector<int> nodes_of(const NodePoint& child, const NodePoint& parent) {
+std::vector<int> ends_that_move(const NodePoint& child, const NodePoint& parent) {
   assert(child.node >= 0 && child.node != parent.node && "between two bodies, of which one at least moves");
   std::vector<int> nodes;
   for (const NodePoint* point : {&child, &parent})
@@ -18,7 +18,7 @@ std::vector<int> nodes_of(const NodePoint& child, const NodePoint& parent) {
 }  // namespace
 
 LineElement::LineElement(std::string name, const NodePoint& from, const NodePoint& to)
-    : ForceElement(std::move(name), to.node >= 0 ? nodes_of(to, from) : nodes_of(from, to)),
+    : ForceElement(std::move(name), to.node >= 0 ? ends_that_move(to, from) : ends_that_move(from, to)),
       child_(to.node >= 0 ? to : from),
       parent_(to.node >= 0 ? from : to) {}
 

@@ -5,6 +5,11 @@
 
 namespace flexarm {
 
+template <int Nodes>
+struct BeamElement;
+template <int Nodes>
+struct ElementSystem;
+
 /// The targets to which the parts of a step add their contributions.
 struct Balance {
   ReducedResidual& residual;
@@ -13,6 +18,10 @@ struct Balance {
   /// (docs/notes/newton.md). Null: no stresses are carried.
   ReducedResidual* carried = nullptr;
   double dissipated = 0;  ///< energy dissipated over the step [J]
+
+  /// Adds an element's system. `is_first`: whether this is the first system of this element that is added.
+  template <int Nodes>
+  void add(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, bool is_first);
 };
 
 }  // namespace flexarm

@@ -64,6 +64,7 @@ ConservingBeams::ConservingBeams(const StepConfiguration& configuration, const S
     : configuration_(configuration),
       prestrains_(prestrains),
       rule_(configuration.scheme()),
+      nodes_(configuration.model(), rule_),
       has_memory_(rule_.dissipation.any()) {
   for_each_group(configuration.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
@@ -129,6 +130,7 @@ double ConservingBeams::work_of_prestrains() const {
 }
 
 void ConservingBeams::accept(State& state) {
+  advance_nodes(configuration_, state);
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
   const StepMotion step = configuration_.motion();
   for (std::size_t i = 0; i < state.nodes.size(); ++i) state.nodes[i].mean_spin = step.increments[i] / step.step;

@@ -1,13 +1,14 @@
 #pragma once
-/// All beams of a model over a step of the energy-momentum family, in packs of elements of equal order.
+/// All beams and nodes of a model over a step of the energy-momentum family, in packs of elements of equal order.
 
 #include <array>
 #include <tuple>
 #include <vector>
 
 #include "elements/conserving_pack.h"
-#include "integrators/beam_family.h"
+#include "integrators/conserving_nodes.h"
 #include "integrators/pack_branches.h"
+#include "integrators/scheme_family.h"
 
 namespace flexarm {
 
@@ -27,16 +28,18 @@ struct ElementPack {
 template <int Nodes>
 using PackGroup = std::vector<ElementPack<Nodes>>;
 
-class ConservingBeams : public BeamFamily {
+class ConservingBeams : public SchemeFamily {
  public:
   ConservingBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
   void initialise(State& state) override;
   void begin() override;
   void add_forces(Balance& balance) override;
+  void add_inertia(Balance& balance) override { nodes_.add(configuration_.motion(), balance); }
   void carry_strains(const double* update) override;
   bool carries_strains() const override { return carries_strains_; }
   double work_of_prestrains() const override;
+  NodeState motion_at_end(int node) const override { return flexarm::motion_at_end(configuration_, node); }
   void accept(State& state) override;
   void invalidate() override { holds_begin_points_ = false; }
   bool evaluates_packs() const override { return true; }
@@ -61,6 +64,7 @@ class ConservingBeams : public BeamFamily {
   const StepConfiguration& configuration_;
   const StepPrestrains& prestrains_;
   TimeRule rule_;
+  ConservingNodes nodes_;
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;
   bool has_memory_ = false;               // numerical dissipation or structural damping keep State::strain_memory
   std::vector<StrainMemory> end_memory_;  // per stiffness point, where has_memory_

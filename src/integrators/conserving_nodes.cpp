@@ -1,5 +1,8 @@
 #include "integrators/conserving_nodes.h"
 
+#include <cassert>
+
+#include "elements/node_motion.h"
 #include "integrators/gathered.h"
 #include "math/lanes.h"
 #include "math/simd.h"
@@ -24,7 +27,6 @@ void scatter(const NodePack& pack, const ConservingNode<Pack>& node, Balance& ba
 }  // namespace
 
 ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : velocity_factor_(rule.velocity_factor()) {
-  if (rule.stress != StressRule::Conjugate) return;
   int lane = 0;
   for (std::size_t i = 0; i < model.inertias.size(); ++i) {
     const NodalInertia& inertia = model.inertias[i];
@@ -75,6 +77,17 @@ void ConservingNodes::add(const StepMotion& step, Balance& balance) const {
       scatter(pack, forces, balance);
     }
   });
+}
+
+NodeState motion_at_end(const StepConfiguration& configuration, int node) {
+  return advanced(configuration.scheme(), configuration.begin()[node], configuration.end()[node],
+                  configuration.state().nodes[node], configuration.increments()[node], configuration.step());
+}
+
+void advance_nodes(const StepConfiguration& configuration, State& state) {
+  assert(state.nodes.size() == configuration.begin().size());
+  for (std::size_t i = 0; i < state.nodes.size(); ++i)
+    state.nodes[i] = motion_at_end(configuration, static_cast<int>(i));
 }
 
 }  // namespace flexarm

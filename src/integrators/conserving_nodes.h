@@ -6,15 +6,13 @@
 
 #include "elements/conserving_node.h"
 #include "integrators/balance.h"
-#include "integrators/step_motion.h"
-#include "schemes/time_rule.h"
+#include "integrators/step_configuration.h"
 
 namespace flexarm {
 
 class ConservingNodes {
  public:
-  /// Empty unless the rule is one of the energy-momentum family. All rules of that family rotate bodies by
-  /// tangent-scaled increments.
+  /// All rules of the energy-momentum family rotate bodies by tangent-scaled increments.
   ConservingNodes(const Model& model, const TimeRule& rule);
 
   /// Adds the rates of momentum, and the damping, to the balance.
@@ -33,5 +31,10 @@ class ConservingNodes {
   double velocity_factor_;
   std::vector<NodePack> packs_;
 };
+
+/// A node's motion at the end of a step of a conserving scheme.
+NodeState motion_at_end(const StepConfiguration& configuration, int node);
+/// Writes the motion of all nodes at the end of such a step into the state.
+void advance_nodes(const StepConfiguration& configuration, State& state);
 
 }  // namespace flexarm

@@ -58,7 +58,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
     for (int k = 0; k < N && !scheme.nodal_rotary_inertia; ++k) {
-      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
+      const Vector3& W = state.study.mass_points[element.first_mass_point + k].angular_velocity;
       out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.mass_points[k].inertia * W);
     }
   });
@@ -105,9 +105,9 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
     for (int k = 0; k < N; ++k) {
       const auto& point = element.mass_points[k];
       const int index = element.first_mass_point + k;
-      const Vector3& W = state.mass_points[index].angular_velocity;
-      out.angular +=
-          point.weight * (point_rotation(local, point, state.mass_rotations, index).rotation * (point.inertia * W));
+      const Vector3& W = state.study.mass_points[index].angular_velocity;
+      out.angular += point.weight *
+                     (point_rotation(local, point, state.study.mass_rotations, index).rotation * (point.inertia * W));
     }
   });
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {

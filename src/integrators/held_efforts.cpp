@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "elements/nodal_inertia.h"
+#include "elements/node_motion.h"
 #include "joints/joint_kinematics.h"
 
 namespace flexarm {
@@ -22,7 +22,7 @@ Vector6 momentum_rate(const HeldJoint& held, const NodeState& node) {
   const Vector3 &W = node.angular_velocity, &A = node.angular_acceleration, &c = held.centre;
   Vector6 out;
   out << held.mass * (node.acceleration + node.orientation * Vector3(A.cross(c) + W.cross(W.cross(c)))),
-      momentum_rate(node.orientation.toRotationMatrix(), held.inertia, {W, A});
+      momentum_rate(node.orientation.toRotationMatrix(), held.inertia, W, A);
   return out;
 }
 
@@ -30,8 +30,7 @@ void HeldEfforts::add_inertia(const HeldJoint& held, int node, Vector6& wrench) 
   const StepConfiguration& step = configuration_;
   const Scheme& scheme = step.scheme();
   const NodeState& begin = step.state().nodes[node];
-  NodeState end = advanced(scheme, {step.begin()[node], step.end()[node], begin, step.increments()[node],
-                                    step.inverse_tangents()[node], step.step()});
+  NodeState end = family_.motion_at_end(node);
   if (scheme.is_incremental()) {
     wrench += (body_momentum(held, end) - body_momentum(held, begin)) / step.step();
     return;

@@ -3,6 +3,7 @@
 
 #include "integrators/joint_reactions.h"
 #include "integrators/nodal_forces.h"
+#include "integrators/scheme_family.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
 #include "solver/reduced_residual.h"
@@ -20,8 +21,8 @@ Vector6 momentum_rate(const HeldJoint& held, const NodeState& node);
 class HeldEfforts {
  public:
   HeldEfforts(const StepConfiguration& configuration, const StepHistories& histories, const NodalForces& forces,
-              const JointReactions& reactions)
-      : configuration_(configuration), histories_(histories), forces_(forces), reactions_(reactions) {}
+              const JointReactions& reactions, const SchemeFamily& family)
+      : configuration_(configuration), histories_(histories), forces_(forces), reactions_(reactions), family_(family) {}
 
   /// The effort over the step, or at its end in the Newmark family [N or N m].
   /// @param residual  as it is after the step
@@ -35,6 +36,7 @@ class HeldEfforts {
   const StepHistories& histories_;
   const NodalForces& forces_;
   const JointReactions& reactions_;
+  const SchemeFamily& family_;
   FoldMaps maps_;
 };
 

@@ -2,57 +2,16 @@
 
 #include <cassert>
 
-#include "elements/nodal_inertia.h"
 #include "math/cayley.h"
 #include "model/carried_origin.h"
 
 namespace flexarm {
 
-NodalForces::NodalForces(const StepConfiguration& configuration, const StepHistories& histories,
-                         HhtInterpolation* interpolation)
-    : configuration_(configuration), histories_(histories), interpolation_(interpolation) {
+NodalForces::NodalForces(const StepConfiguration& configuration, const StepHistories& histories)
+    : configuration_(configuration), histories_(histories) {
   const std::vector<NodalInertia>& inertias = configuration.model().inertias;
-  for (std::size_t i = 0; i < inertias.size(); ++i) {
+  for (std::size_t i = 0; i < inertias.size(); ++i)
     if (inertias[i].total_mass > 0) heavy_nodes_.push_back(static_cast<int>(i));
-    // In the energy-momentum family, damping is computed together with inertia (ConservingNodes, PlanarBeams).
-    if (configuration.scheme().stress == StressRule::Conjugate) continue;
-    if (!inertias[i].rotary_damping.isZero(0)) damped_nodes_.push_back(static_cast<int>(i));
-  }
-}
-
-void NodalForces::add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
-                      bool with_tangent, Balance& balance) const {
-  if (interpolation_)
-    interpolation_->take(node, force, rotational, of_configuration, with_tangent);
-  else
-    balance.residual.node(node) += force;
-  if (!with_tangent) return;
-  Matrix6 tangent = Matrix6::Zero();
-  tangent.rightCols<3>() = rotational;
-  balance.tangent->add_to_node(node, tangent);
-}
-
-void NodalForces::add_weight(int node, Balance& balance) const {
-  const Model& model = configuration_.model();
-  const Vector3 weight = -histories_.factor * model.inertias[node].total_mass * model.gravity;
-  if (interpolation_)
-    interpolation_->take(node, weight);
-  else
-    balance.residual.node(node).head<3>() += weight;
-}
-
-void NodalForces::add_damping(int node, Balance& balance) const {
-  const StepConfiguration& step = configuration_;
-  const Vector3& increment = step.increments()[node];
-  const Matrix3 inverse_tangent = balance.tangent ? cayley::inverse_tangent(increment) : Matrix3::Identity();
-  const NodalAction damping = nodal_damping_action(
-      step.model().inertias[node], step.scheme(),
-      {step.begin()[node], step.end()[node], step.state().nodes[node], increment, inverse_tangent, step.step()},
-      balance.tangent != nullptr);
-  Eigen::Matrix<double, 6, 3> rotational = Eigen::Matrix<double, 6, 3>::Zero();
-  rotational.bottomRows<3>() = damping.rotational;
-  add(node, damping.residual, rotational, false, balance.tangent != nullptr, balance);
-  balance.dissipated += damping.dissipated;
 }
 
 PullAction NodalForces::pull(const NodalLoad& load) const {
@@ -67,24 +26,14 @@ void NodalForces::add_pull(const NodalLoad& load, Balance& balance) const {
   if (balance.tangent) balance.tangent->add_to_node(load.node, -histories_.factor * action.derivative);
 }
 
-template <class Visit>
-void NodalForces::for_each_load(const Visit& visit) const {
-  for (const NodalLoad& load : configuration_.model().loads) visit(load, histories_.of_load(load.history));
-  for (const NodalLoad& wrench : configuration_.state().wrenches) visit(wrench, StepForce{1.0, 1.0, 1.0});
-}
-
 void NodalForces::evaluate(Balance& balance) const {
-  const Scheme& scheme = configuration_.scheme();
-  for (const int node : heavy_nodes_) add_weight(node, balance);
-  if (!scheme.is_static)
-    for (const int node : damped_nodes_) add_damping(node, balance);
-  const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
-  const LoadPoint point = load_point(scheme);
-  const std::vector<NodePose>& loaded = interpolation_ ? interpolation_->configuration() : end;
-  for_each_load([&](const NodalLoad& load, const StepForce& value) {
-    const LoadAction action = load_action(load, histories_.factor * value.acting, begin[load.node].rotation,
-                                          loaded[load.node].rotation, point);
-    add(load.node, -action.wrench, -action.derivative, true, balance.tangent != nullptr, balance);
+  for_each_weight([&](int node, const Vector3& weight) { balance.residual.node(node).head<3>() -= weight; });
+  for_each_action(configuration_.end(), [&](int node, const LoadAction& action) {
+    balance.residual.node(node) -= action.wrench;
+    if (!balance.tangent) return;
+    Matrix6 tangent = Matrix6::Zero();
+    tangent.rightCols<3>() = -action.derivative;
+    balance.tangent->add_to_node(node, tangent);
   });
   for (const NodalLoad& wrench : configuration_.state().wrenches)
     if (wrench.pull.acts()) add_pull(wrench, balance);

@@ -306,6 +306,7 @@ void PlanarBeams::carry_strains(const double* update) {
 }
 
 void PlanarBeams::accept(State& state) {
+  advance_nodes(configuration_, state);
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
   for_each_group(groups_, [&](const auto& packs) {
     for (const auto& pack : packs)

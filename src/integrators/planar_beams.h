@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "elements/planar_pack.h"
-#include "integrators/beam_family.h"
+#include "integrators/conserving_nodes.h"
 #include "integrators/pack_branches.h"
+#include "integrators/scheme_family.h"
 #include "model/plane.h"
 
 namespace flexarm {
 
 /// Adds residuals in world axes, and tangent blocks to a PlanarTangent in the axes of the plane.
-class PlanarBeams : public BeamFamily {
+class PlanarBeams : public SchemeFamily {
  public:
   /// The configuration must move in this plane, with a scheme with StressRule::Conjugate. Both objects must outlive
   /// this.
@@ -26,7 +27,7 @@ class PlanarBeams : public BeamFamily {
   void add_inertia(Balance& balance) override;
   void carry_strains(const double* update) override;
   bool carries_strains() const override { return carries_strains_; }
-  double work_of_prestrains() const override { return 0; }
+  NodeState motion_at_end(int node) const override { return flexarm::motion_at_end(configuration_, node); }
   void accept(State& state) override;
   void invalidate() override { holds_begin_points_ = false; }
 

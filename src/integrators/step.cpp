@@ -51,9 +51,9 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
 void StepSystem::start(const State& state, double step) {
   configuration_.begin(state, step);
   histories_.begin(configuration_);
-  if (planar_ && planar_->choose(model_, state)) beams().invalidate();
-  if (prestrains_.begin(1)) beams_->invalidate();
-  beams().begin();
+  if (planar_ && planar_->choose(model_, state)) family().invalidate();
+  if (prestrains_.begin(1)) family_->invalidate();
+  family().begin();
   force_elements_.begin(*tangent_);
   loops_.begin();
   friction_.begin();
@@ -132,23 +132,16 @@ bool StepSystem::evaluate(bool with_tangent) {
   Balance balance{rows_, with_tangent ? &tangent() : nullptr};
   rows_.set_zero();
   if (with_tangent) tangent().set_zero(), has_planar_tangent_ = is_planar();
-  if (with_tangent && beams().carries_strains()) {
+  if (with_tangent && family().carries_strains()) {
     carried_rows_.set_zero();
     balance.carried = &carried_rows_;
   }
-  if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static && !is_planar())
-    configuration_.set_inverse_tangents();
 
-  if (interpolation_) interpolation_->begin_evaluation();
   add_forces(balance);
-  if (interpolation_) interpolation_->add_forces(balance);
-  if (scheme().is_static) {
+  if (scheme().is_static)
     drag_.evaluate(balance);
-  } else {
-    if (!is_planar()) bodies_.evaluate(balance);
-    beams().add_inertia(balance);
-  }
-  if (interpolation_) interpolation_->shift_reactions(balance);
+  else
+    family().add_inertia(balance);
   loops_.evaluate(balance);
   actuators_.evaluate(balance);
   joints_.evaluate(balance);
@@ -161,8 +154,8 @@ bool StepSystem::evaluate(bool with_tangent) {
 }
 
 void StepSystem::add_forces(Balance& balance) {
-  beams().add_forces(balance);
-  forces_.evaluate(balance);
+  family().add_forces(balance);
+  family().add_loads(forces_, balance);
   force_elements_.evaluate(balance);
 }
 
@@ -189,19 +182,17 @@ void StepSystem::accept(State& state) {
   forces_.add_work(work);
   force_elements_.add_work(work);
   efforts_.add_work(work);
-  if (prestrains_.do_work()) work += beams().work_of_prestrains();
+  if (prestrains_.do_work()) work += family().work_of_prestrains();
   state.work += work;
   state.dissipated += dissipated_;
   configuration_.remember_increments(state.history);
   if (is_planar()) planar_->tidy(configuration_, state.history);
   scales_.choose_order(state.history);
   loops_.remember(state.history);
-  bodies_.accept(state);
+  family().accept(state);
   joints_.accept(state);
   efforts_.accept(state);
   actuators_.accept(state);
-  beams().accept(state);
-  if (interpolation_) interpolation_->accept(state);
   if (configuration_.led_to()) state.drives.begin_anew(), state.transmitted.begin_anew();
   state.time = configuration_.end_time();
 }

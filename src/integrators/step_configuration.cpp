@@ -29,7 +29,6 @@ StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, c
       end_(model.nodes),
       released_(model.initial_released),
       increments_(model.nodes.size(), Vector3::Zero()),
-      inverse_tangents_(model.nodes.size(), Matrix3::Identity()),
       keeps_begin_rates_(!scheme.is_incremental() && !scheme.is_static),
       begin_velocities_(model.nodes.size()),
       begin_rates_(model.joints.size()) {
@@ -42,6 +41,8 @@ void StepConfiguration::begin(const State& state, double step) {
   state_ = &state;
   step_ = step;
   end_time_ = step_end(state.time, step);
+  const bool shifts_reactions = scheme_.hht != HhtForm::None && !scheme_.is_static && !state.study.reactions.empty();
+  effort_weight_ = shifts_reactions ? 1 / (1 - scheme_.alpha) : 1;
   for (std::size_t i = 0; i < state.nodes.size(); ++i) begin_[i] = node_pose(state.nodes[i]);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
@@ -154,10 +155,6 @@ void StepConfiguration::set_end(const State& state) {
   set_increments(begin_, end_, increments_);
 }
 
-void StepConfiguration::set_inverse_tangents() {
-  for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
-}
-
 void StepConfiguration::remember_increments(IncrementHistory& history) const {
   std::vector<double>& made = history.push(step_, dof_.unknowns);
   for (int i = 0; i < dof_.node_count; ++i) {
@@ -260,11 +257,6 @@ MimicMap StepConfiguration::mimic_map(int coordinate) const {
   const double right = law.derivative(to);
   if (!has_incremental_joints()) return {right, right, law.second_derivative(to)};
   return {law.secant(from, to), right, law.secant_derivative(from, to)};
-}
-
-double StepConfiguration::effort_weight() const {
-  const bool shifts_reactions = scheme_.hht != HhtForm::None && !scheme_.is_static && !state_->reactions.empty();
-  return shifts_reactions ? 1 / (1 - scheme_.alpha) : 1;
 }
 
 ReleasedVector StepConfiguration::increment_of(int joint) const {

@@ -44,8 +44,6 @@ class StepConfiguration {
   void update(const Eigen::VectorXd& increment);
   /// Sets mimic coordinates, slaves and increments. To be called after all other changes of the trial end.
   void set_slaves();
-  /// Computes inverse_tangents() of all nodes.
-  void set_inverse_tangents();
   /// Sets the trial end to the configuration of a state.
   void set_end(const State& state);
   /// Prescribes the branches of stops and friction. Null: they follow from the motion. `modes` must outlive the steps.
@@ -65,9 +63,8 @@ class StepConfiguration {
   const std::vector<Released>& released() const { return released_; }
   Released& released(int joint) { return released_[joint]; }
   /// Per node: tangent-scaled rotation increments over the step, that is, rotation vectors of the length 2
-  /// tan(angle/2), and the inverses of their tangents.
+  /// tan(angle/2).
   const std::vector<Vector3>& increments() const { return increments_; }
-  const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
   /// The largest tangent-scaled rotation increment, and its node.
   struct LargestIncrement {
     double size = 0;
@@ -95,7 +92,7 @@ class StepConfiguration {
   bool forces_are_means() const { return scheme_.is_incremental() || state_->history.count == 0; }
   /// Factor of efforts in the rows of coordinates. It is not 1 in schemes that interpolate forces in time: there the
   /// balance holds between both ends of the step, and efforts are extrapolated to the end.
-  double effort_weight() const;
+  double effort_weight() const { return effort_weight_; }
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
@@ -130,12 +127,11 @@ class StepConfiguration {
   FreeNodes free_nodes_;
   Eigen::VectorXd guess_;  // guessed increments, one entry per unknown
   const State* state_ = nullptr;
-  double step_ = 0, end_time_ = 0;
+  double step_ = 0, end_time_ = 0, effort_weight_ = 1;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
   std::vector<slide::Place> begin_places_, end_places_;  // per joint, valid for sliders; empty if there are none
   std::vector<Vector3> increments_;
-  std::vector<Matrix3> inverse_tangents_;
   int off_line_joint_ = -1;
   bool keeps_begin_rates_ = false;
   const EventModes* modes_ = nullptr;

@@ -10,13 +10,9 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       configuration_(model, scheme, dof_),
       histories_(model),
       prestrains_(configuration_),
-      beams_(make_beam_family(configuration_, prestrains_)),
-      interpolation_(scheme.hht != HhtForm::None && !scheme.is_static
-                         ? std::make_unique<HhtInterpolation>(configuration_, beams_->total_rotations())
-                         : nullptr),
-      forces_(configuration_, histories_, interpolation_.get()),
+      family_(make_scheme_family(configuration_, prestrains_)),
+      forces_(configuration_, histories_),
       force_elements_(configuration_, histories_),
-      bodies_(configuration_),
       drag_(configuration_),
       loops_(configuration_),
       friction_(configuration_),
@@ -24,7 +20,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       actuators_(configuration_, histories_, efforts_),
       joints_(configuration_, efforts_, friction_, actuators_),
       reactions_(configuration_, loops_),
-      held_efforts_(configuration_, histories_, forces_, reactions_),
+      held_efforts_(configuration_, histories_, forces_, reactions_, *family_),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),
@@ -34,8 +30,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)),
       nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
       scales_(model, dof_) {
-  beams_->set_interpolation(interpolation_.get());
-  if (beams_->evaluates_packs()) tangent_->condense_interiors();
+  if (family_->evaluates_packs()) tangent_->condense_interiors();
 }
 
 void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
@@ -66,7 +61,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   configuration_.begin(state, 0);
   histories_.begin(configuration_);
   prestrains_.begin(load_factor);
-  beams_->begin();
+  family_->begin();
   force_elements_.begin(*tangent_);
   loops_.begin();
   efforts_.begin();
@@ -76,7 +71,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
 }
 
 void StepSystem::invalidate() {
-  beams_->invalidate();
+  family_->invalidate();
   if (planar_) planar_->invalidate();
 }
 
@@ -92,28 +87,20 @@ void StepSystem::carry_strains(double fraction) {
   const double* solution = tangent().expanded_solution();
   if (!solution) return;
   for (std::size_t i = 0; i < nodal_update_.size(); ++i) nodal_update_[i] = fraction * solution[i];
-  beams().carry_strains(nodal_update_.data());
+  family().carry_strains(nodal_update_.data());
 }
 
 void StepSystem::accept_rest(State& state) {
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    state.nodes[i] = NodeState();
-    state.nodes[i].position = configuration_.end()[i].position;
-    state.nodes[i].orientation = configuration_.end()[i].orientation;
-  }
+  family_->accept(state);
   joints_.accept(state);
   efforts_.accept(state);
   actuators_.accept(state);
   force_elements_.accept(state);
-  beams_->accept(state);
-  std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
-  std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
   std::fill(state.branch_strains.begin(), state.branch_strains.end(), Vector6::Zero());  // all have relaxed
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   state.drives.restart(state.efforts);
   reactions_.accept_rest(rows_, state);
-  state.reactions.clear();
-  std::fill(state.momentum_rates.begin(), state.momentum_rates.end(), Vector3::Zero());
+  state.study.come_to_rest();
   state.history.clear();
 }
 
@@ -129,13 +116,8 @@ std::vector<Vector6> StepSystem::nodal_forces(const State& state) {
 }
 
 void StepSystem::initialise(State& state) {
-  if (interpolation_) state.momentum_rates.assign(model_.mass_point_count + model_.nodes.size(), Vector3::Zero());
   configuration_.begin(state, 0);
-  beams_->initialise(state);
-  if (interpolation_) {
-    bodies_.initialise(state);
-    state.forces = StepSystem(model_, statics_of(scheme())).nodal_forces(state);
-  }
+  family_->initialise(state);
 }
 
 }  // namespace flexarm

@@ -16,8 +16,6 @@
 #include <memory>
 
 #include "integrators/actuators.h"
-#include "integrators/beam_family.h"
-#include "integrators/bodies.h"
 #include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/force_elements.h"
@@ -27,6 +25,7 @@
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
 #include "integrators/planar_step.h"
+#include "integrators/scheme_family.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
@@ -89,8 +88,8 @@ class StepSystem {
   void accept(State& state);
   /// Discards data kept from the last step. To be called after the state was changed by something other than a step.
   void invalidate();
-  /// Makes strains independent of the path to a configuration: see RotationReference::forget_path().
-  void forget_path(State& state) { beams_->forget_path(state); }
+  /// Makes strains independent of the path to a configuration.
+  void forget_path(State& state) { family_->forget_path(state); }
   /// Whether the step begun last is taken in a plane.
   bool is_planar() const { return planar_ && planar_->is_on; }
 
@@ -134,7 +133,7 @@ class StepSystem {
   void move_ahead(const IncrementHistory& history, int order);
   void place_followers();
   const Scheme& scheme() const { return configuration_.scheme(); }
-  BeamFamily& beams() { return is_planar() ? planar_->beams : *beams_; }
+  SchemeFamily& family() { return is_planar() ? planar_->beams : *family_; }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 
@@ -144,11 +143,9 @@ class StepSystem {
   StepHistories histories_;
   StepPrestrains prestrains_;
   // ---- the parts
-  std::unique_ptr<BeamFamily> beams_;
-  std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time
+  std::unique_ptr<SchemeFamily> family_;
   NodalForces forces_;
   ForceElements force_elements_;
-  Bodies bodies_;
   Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;

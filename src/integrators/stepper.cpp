@@ -8,6 +8,7 @@
 #include "integrators/dissipative_substitute.h"
 #include "integrators/explicit_step.h"
 #include "integrators/failure_place.h"
+#include "integrators/study_library.h"
 #include "math/flush_subnormals.h"
 #include "math/step_end.h"
 #include "model/line_release.h"
@@ -259,38 +260,9 @@ StepResult Stepper::give_up(bool is_late, StepResult result) {
 StepResult Stepper::initialise(State& state) {
   StepResult found;
   found.converged = true;
-  if (!scheme_.is_incremental()) found = initialise_accelerations(state);
+  if (!scheme_.is_incremental()) found = study_library(scheme_).find_accelerations(model_, settings_, state);
   system_.initialise(state);
   return found;
-}
-
-StepResult Stepper::initialise_accelerations(State& state) {
-  // A difference quotient over a step h has a truncation error of order h and a round-off error of order epsilon / h^2.
-  const double h = 1e-2 * settings_.step;
-  StepSettings settings = settings_;
-  settings.step = h;
-  settings.events = {};
-  Scheme scheme = *find_scheme("m1");
-  scheme.heeds_slide_schemes = false;  // the slides' schemes were chosen for another scheme
-  Stepper momentum(model_, scheme, settings);
-  State moved = state;
-  StepResult result = momentum.advance(moved);
-  if (!result.converged) return result;
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    state.nodes[i].acceleration = (moved.nodes[i].velocity - state.nodes[i].velocity) / h;
-    state.nodes[i].angular_acceleration = (moved.nodes[i].angular_velocity - state.nodes[i].angular_velocity) / h;
-  }
-  for (std::size_t i = 0; i < state.mass_points.size(); ++i)
-    state.mass_points[i].angular_acceleration =
-        (moved.mass_points[i].angular_velocity - state.mass_points[i].angular_velocity) / h;
-  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
-    state.actuators[i].acceleration = (moved.actuators[i].rate - state.actuators[i].rate) / h;
-    // The work of the first step uses the motor's effort at both ends. The effort at the start is the one that caused
-    // these accelerations.
-    const int coordinate = model_.actuators[i].coordinate;
-    if (model_.coordinates[coordinate].motion < 0) state.efforts[coordinate] = moved.efforts[coordinate];
-  }
-  return result;
 }
 
 }  // namespace flexarm

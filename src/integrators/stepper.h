@@ -63,7 +63,6 @@ class Stepper {
   bool do_sub_steps(State& state, double duration, const Deadline& deadline, StepResult& result);
   /// Completes the result of a failed step with the place and the reason.
   StepResult give_up(bool is_late, StepResult result);
-  StepResult initialise_accelerations(State& state);
   /// Does one sub-step. A composed scheme does several simple steps. After a failure the state is unchanged.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);

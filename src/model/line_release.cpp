@@ -63,9 +63,9 @@ State state_after_release(const Model& model, State state, int slide) {
   if (model.coordinates[model.first_coordinate[slide]].mimicked < 0)
     arc_length = clamped(model.slide_lines[joint.line], arc_length);
   state.nodes.push_back(state.nodes[model.joints[joint.leaving].slave]);
-  for (auto* per_node : {&state.forces, &state.reactions})
+  for (auto* per_node : {&state.study.forces, &state.study.reactions})
     if (!per_node->empty()) per_node->push_back(Vector6::Zero());
-  for (auto* per_node : {&state.total_rotations, &state.momentum_rates})
+  for (auto* per_node : {&state.study.total_rotations, &state.study.momentum_rates})
     if (!per_node->empty()) per_node->push_back(Vector3::Zero());
   state.history.clear();
   state.left_lines.push_back(slide);

@@ -5,13 +5,13 @@
 
 #include "flexarm/math/pose.h"
 #include "flexarm/model/results.h"
-#include "math/local_rotation.h"
 #include "model/actuator.h"
 #include "model/beam_element.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
 #include "model/nodal_load.h"
 #include "model/step_means.h"
+#include "model/study_memory.h"
 
 namespace flexarm {
 
@@ -38,12 +38,6 @@ inline Vector6 spatial_velocity(const NodeState& node) {
   return velocity;
 }
 
-/// Material angular velocity and acceleration at a mass point, for schemes that integrate the rotary inertia there.
-struct MassPointState {
-  Vector3 angular_velocity = Vector3::Zero();
-  Vector3 angular_acceleration = Vector3::Zero();
-};
-
 /// Memory of numerical dissipation and structural damping at a stiffness point (NumericalDamper, StructuralDamper).
 template <typename S>
 struct StrainMemoryT {
@@ -53,9 +47,6 @@ struct StrainMemoryT {
 };
 using StrainMemory = StrainMemoryT<double>;
 
-/// Rotation and curvature of a point of a beam, for schemes whose interpolation depends on the past.
-using PointRotation = InterpolatedRotation<double>;
-
 struct State {
   double time = 0;                    ///< [s]
   Vector3 origin = Vector3::Zero();   ///< origin of nodes' positions and of translations of free joints on the world,
@@ -64,25 +55,18 @@ struct State {
   std::vector<Released> released;     ///< per elementary joint
   std::vector<int> left_lines;        ///< slides that have left their lines, in order of time
   std::vector<HalvedElement> halved;  ///< those of the model, in ascending order
-  std::vector<MassPointState> mass_points;
-  std::vector<Vector6> strain_rates;  ///< per stiffness point; Newmark family with damping only
   /// Per stiffness point, Model::maxwell_branches each: strains of the branches' springs [-, 1/m].
   std::vector<Vector6> branch_strains;
-  // Empty unless the scheme needs them:
-  std::vector<StrainMemory> strain_memory;                         ///< per stiffness point
-  std::vector<PointRotation> stiffness_rotations, mass_rotations;  ///< per point
-  std::vector<Vector3> total_rotations;  ///< per node: rotation vector from the undeformed state, up to 2 pi
-  std::vector<Vector6> forces;           ///< per node: internal minus external forces at the end of the last step
-  std::vector<Vector6> reactions;        ///< per node: what joints transmitted to it in the last step
-  std::vector<Vector3> momentum_rates;   ///< d(Lambda J W)/dt per mass point, then per node
-  std::vector<double> commands;          ///< per coordinate: commanded effort; NaN: no command
-  std::vector<NodalLoad> wrenches;       ///< applied by programs, in addition to the scene's loads
-  std::vector<double> efforts;           ///< per coordinate: effort applied in the last step
-  std::vector<double> rests;             ///< per coordinate: 1 if dry friction stopped it in the last step, else 0
-  std::vector<ActuatorState> actuators;  ///< per actuator
-  IncrementHistory history;              ///< of the last sub-steps, for the predictor
-  StepMeans drives;                      ///< efforts that drive prescribed coordinates, for output
-  StepMeans transmitted;                 ///< {force, moment} per Model::reactions, for output
+  std::vector<StrainMemory> strain_memory;  ///< per stiffness point; empty unless something damps or dissipates
+  StudyMemory study;                        ///< what only the schemes for study store
+  std::vector<double> commands;             ///< per coordinate: commanded effort; NaN: no command
+  std::vector<NodalLoad> wrenches;          ///< applied by programs, in addition to the scene's loads
+  std::vector<double> efforts;              ///< per coordinate: effort applied in the last step
+  std::vector<double> rests;                ///< per coordinate: 1 if dry friction stopped it in the last step, else 0
+  std::vector<ActuatorState> actuators;     ///< per actuator
+  IncrementHistory history;                 ///< of the last sub-steps, for the predictor
+  StepMeans drives;                         ///< efforts that drive prescribed coordinates, for output
+  StepMeans transmitted;                    ///< {force, moment} per Model::reactions, for output
   std::vector<double> last_transmitted;  ///< as `transmitted`, at the end of the last step; for means, Newmark family
   std::vector<SensorSample> samples;     ///< per sensor: its last measurement
   std::vector<double> force_memory;      ///< memories of all force elements, one after the other

@@ -33,11 +33,11 @@ void for_each_number(AnyState& state, const Visit& visit, std::size_t past_steps
     vector("a joint's displacement", released.displacement);
     vector("a joint's rotation", released.rotation.coeffs());
   }
-  for (auto& point : state.mass_points) {
+  for (auto& point : state.study.mass_points) {
     vector("a mass point's angular velocity", point.angular_velocity);
     vector("a mass point's angular acceleration", point.angular_acceleration);
   }
-  for (auto& rate : state.strain_rates) vector("a strain rate", rate);
+  for (auto& rate : state.study.strain_rates) vector("a strain rate", rate);
   for (auto& strain : state.branch_strains) vector("a strain of a Maxwell element", strain);
   for (auto& command : state.commands) visit(kCommand, command);
   for (auto& wrench : state.wrenches) {
@@ -75,15 +75,15 @@ void for_each_number(AnyState& state, const Visit& visit, std::size_t past_steps
     vector("a strain rate", memory.rate);
     vector("a delayed strain rate", memory.delayed_rate);
   }
-  for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
+  for (auto* points : {&state.study.stiffness_rotations, &state.study.mass_rotations})
     for (auto& point : *points) {
       for (int k = 0; k < 9; ++k) visit("a point's rotation", point.rotation(k / 3, k % 3));
       vector("a point's curvature", point.curvature);
     }
-  for (auto& rotation : state.total_rotations) vector("a total rotation", rotation);
-  for (auto& force : state.forces) vector("a nodal force", force);
-  for (auto& reaction : state.reactions) vector("a reaction", reaction);
-  for (auto& rate : state.momentum_rates) vector("a momentum rate", rate);
+  for (auto& rotation : state.study.total_rotations) vector("a total rotation", rotation);
+  for (auto& force : state.study.forces) vector("a nodal force", force);
+  for (auto& reaction : state.study.reactions) vector("a reaction", reaction);
+  for (auto& rate : state.study.momentum_rates) vector("a momentum rate", rate);
   for (auto& impulse : state.transmitted.impulse) visit("the impulse of a joint", impulse);
   for (auto& means : state.transmitted.means)
     for (auto& mean : means) visit("what a joint transmits", mean);

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "building/loaded_library.h"
 #include "flexarm/scene/resource_path.h"
+#include "math/loaded_library.h"
 #include "meshes/library.h"
 
 namespace flexarm::pictures {

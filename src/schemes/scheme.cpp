@@ -37,6 +37,13 @@ Scheme statics_of(Scheme scheme) {
   return scheme;
 }
 
+Scheme with_local_strains(Scheme scheme) {
+  scheme.interpolation = Interpolation::Local;
+  scheme.cayley_interpolation = false;
+  scheme.weak_form = WeakForm::Spin;
+  return scheme;
+}
+
 void take_constants_of_step(Scheme& scheme, const IntegratorDescription& integrator, double step) {
   scheme.blur = step;
   if (scheme.damping_relaxation > 0) scheme.damping_relaxation = step;

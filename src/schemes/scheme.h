@@ -46,6 +46,8 @@ const std::vector<Scheme>& explicit_schemes();
 std::optional<Scheme> find_scheme(std::string_view name);
 /// The static rule with the scheme's interpolation, for equilibria: forces in one configuration, without motion.
 Scheme statics_of(Scheme scheme);
+/// The scheme with the interpolation and the weak form that do not depend on the path to a configuration.
+Scheme with_local_strains(Scheme scheme);
 /// All schemes that a name in a scene can stand for: two for "auto", none if the name is unknown.
 std::vector<const Scheme*> meanings(std::string_view name);
 /// The scheme with the options of <integrator>. "auto" becomes edmc2 if rho_infinity requests numerical dissipation.

@@ -83,6 +83,11 @@ struct TimeRule {
     gamma = 0.5 - alpha;
     beta = 0.25 * (1 - alpha) * (1 - alpha);
   }
+  /// Whether beams and nodes belong to the room study_schemes/, the library of which is loaded for them.
+  bool is_for_study() const {
+    if (!is_static) return stress != StressRule::Conjugate;
+    return interpolation != Interpolation::Local || weak_form != WeakForm::Spin || hht == HhtForm::AdditiveForces;
+  }
   /// Whether joints use the incremental maps N_Delta; otherwise they use N_delta at t_{n+1}.
   bool is_incremental() const { return stress != StressRule::EndPoint; }
   /// The factor in v_1 = velocity_factor() Delta r / h - (velocity_factor() - 1) v_0, for conserving schemes.

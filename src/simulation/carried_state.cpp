@@ -224,11 +224,11 @@ class Carrier {
       const bool is_free_body = sizes[i] == 1 && !is_held[i];
       if (!is_free_body && (same_.nodes[i] < 0 || is_touched_[i])) return false;
     }
-    return !state_.reactions.empty();
+    return !state_.study.reactions.empty();
   }
 
   void overlay_nodes(State& out) const {
-    if (knows_reactions()) out.reactions.assign(same_.nodes.size(), Vector6::Zero());
+    if (knows_reactions()) out.study.reactions.assign(same_.nodes.size(), Vector6::Zero());
     const std::size_t points = new_.mass_point_count, old_points = old_.mass_point_count;
     for (std::size_t i = 0; i < same_.nodes.size(); ++i) {
       const int old = same_.nodes[i];
@@ -236,16 +236,16 @@ class Carrier {
       const NodeState found = out.nodes[i];
       out.nodes[i] = state_.nodes[old];
       out.nodes[i].position += shift();
-      take(state_.total_rotations, old, out.total_rotations, i);
-      take(state_.reactions, old, out.reactions, i);
+      take(state_.study.total_rotations, old, out.study.total_rotations, i);
+      take(state_.study.reactions, old, out.study.reactions, i);
       if (is_touched_[i]) {
         out.nodes[i].mean_spin = found.mean_spin;
         out.nodes[i].acceleration = found.acceleration;
         out.nodes[i].angular_acceleration = found.angular_acceleration;
       } else {
-        take(state_.forces, old, out.forces, i);
-        if (!out.momentum_rates.empty() && !state_.momentum_rates.empty())
-          out.momentum_rates[points + i] = state_.momentum_rates[old_points + old];
+        take(state_.study.forces, old, out.study.forces, i);
+        if (!out.study.momentum_rates.empty() && !state_.study.momentum_rates.empty())
+          out.study.momentum_rates[points + i] = state_.study.momentum_rates[old_points + old];
       }
     }
   }
@@ -256,19 +256,19 @@ class Carrier {
       for (int b = 0; b < branches && same_.stiffness_points[i] >= 0; ++b)
         take(state_.branch_strains, same_.stiffness_points[i] * old_.maxwell_branches + b, out.branch_strains,
              i * new_.maxwell_branches + b);
-      take(state_.strain_rates, same_.stiffness_points[i], out.strain_rates, i);
+      take(state_.study.strain_rates, same_.stiffness_points[i], out.study.strain_rates, i);
       take(state_.strain_memory, same_.stiffness_points[i], out.strain_memory, i);
-      take(state_.stiffness_rotations, same_.stiffness_points[i], out.stiffness_rotations, i);
+      take(state_.study.stiffness_rotations, same_.stiffness_points[i], out.study.stiffness_rotations, i);
     }
     for (std::size_t i = 0; i < same_.mass_points.size(); ++i) {
       if (same_.mass_points[i] < 0) continue;
-      const Vector3 found = out.mass_points[i].angular_acceleration;
-      out.mass_points[i] = state_.mass_points[same_.mass_points[i]];
-      take(state_.mass_rotations, same_.mass_points[i], out.mass_rotations, i);
+      const Vector3 found = out.study.mass_points[i].angular_acceleration;
+      out.study.mass_points[i] = state_.study.mass_points[same_.mass_points[i]];
+      take(state_.study.mass_rotations, same_.mass_points[i], out.study.mass_rotations, i);
       if (touched_points_.count(static_cast<int>(i)) > 0)
-        out.mass_points[i].angular_acceleration = found;
-      else if (!out.momentum_rates.empty() && !state_.momentum_rates.empty())
-        out.momentum_rates[i] = state_.momentum_rates[same_.mass_points[i]];
+        out.study.mass_points[i].angular_acceleration = found;
+      else if (!out.study.momentum_rates.empty() && !state_.study.momentum_rates.empty())
+        out.study.momentum_rates[i] = state_.study.momentum_rates[same_.mass_points[i]];
     }
   }
 

@@ -43,7 +43,7 @@ SceneIdentity identity(const Simulation& simulation) {
   SceneIdentity out = identity_of(simulation.scene(), scheme_of(simulation));
   const std::pair<const char*, std::size_t> counts[] = {{"nodes", state.nodes.size()},
                                                         {"joints", state.released.size()},
-                                                        {"mass_points", state.mass_points.size()},
+                                                        {"mass_points", state.study.mass_points.size()},
                                                         {"coordinates", state.commands.size()}};
   for (const auto& [name, count] : counts) {
     out.text += fmt::format("{}{} {}", out.text.back() == '\n' ? "" : " ", name, count);
@@ -112,10 +112,10 @@ std::string differences(const std::vector<SceneValue>& expected, std::multimap<s
 
 /// Resizes everything that a state has per node.
 void resize_nodes(State& state, std::size_t count) {
-  if (!state.total_rotations.empty()) state.total_rotations.resize(count, Vector3::Zero());
-  if (!state.forces.empty()) state.forces.resize(count, Vector6::Zero());
-  if (!state.momentum_rates.empty())
-    state.momentum_rates.resize(state.momentum_rates.size() - state.nodes.size() + count, Vector3::Zero());
+  if (!state.study.total_rotations.empty()) state.study.total_rotations.resize(count, Vector3::Zero());
+  if (!state.study.forces.empty()) state.study.forces.resize(count, Vector6::Zero());
+  if (!state.study.momentum_rates.empty())
+    state.study.momentum_rates.resize(state.study.momentum_rates.size() - state.nodes.size() + count, Vector3::Zero());
   state.nodes.resize(count);
 }
 
@@ -229,7 +229,7 @@ std::string halved_line(const State& state) {
 std::string counts_line(const State& state) {
   return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}{}\n",
                      state.steps, state.halving_level, state.good_steps, state.history.increments[0].size(),
-                     state.history.count, state.history.order, state.drives.count, state.reactions.size(),
+                     state.history.count, state.history.order, state.drives.count, state.study.reactions.size(),
                      state.left_lines.size(), fmt::join(state.left_lines, " "), wrenches_text(state.wrenches)) +
          // Written only for scenes with sensors, so that older files of scenes without sensors can still be read.
          (state.samples.empty() ? "" : fmt::format("transmitted {}\n", state.transmitted.count));
@@ -264,7 +264,7 @@ void read_counts(Reader& reader, const std::string& line, State& state) {
   state.left_lines.resize(left);
   for (int& joint : state.left_lines) in >> joint;
   require(in && increments <= 6 * state.nodes.size() + 6 * state.released.size() && reactions <= state.nodes.size());
-  state.reactions.assign(reactions, Vector6::Zero());
+  state.study.reactions.assign(reactions, Vector6::Zero());
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
   std::size_t wrenches = 0;
   if (in >> word) require(in >> wrenches && wrenches <= line.size());  // each takes some of the line's characters

@@ -60,7 +60,7 @@ class FreedState {
     out.time = state_.time;
     out.steps = state_.steps;
     out.origin = state_.origin;
-    out.mass_points = state_.mass_points;
+    out.study.mass_points = state_.study.mass_points;
     out.strain_memory = state_.strain_memory;
     out.branch_strains = state_.branch_strains;
     out.commands = state_.commands;

@@ -312,8 +312,8 @@ struct Simulation::Implementation {
       state.nodes[i] = {node.position, node.orientation, node.velocity, node.angular_velocity};
     }
     state.released = from.state.released;
-    if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.mass_points = closed.mass_points;
-    if (initial->total_rotations.empty()) state.total_rotations.clear();
+    if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.study.mass_points = closed.study.mass_points;
+    if (initial->study.total_rotations.empty()) state.study.total_rotations.clear();
     begin(state);
     return state;
   }

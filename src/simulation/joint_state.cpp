@@ -306,9 +306,9 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   carry_memories(model, dof, state, before, after, out);
   out.steps = state.steps;
   out.left_lines = state.left_lines;
-  out.strain_rates = state.strain_rates;
+  out.study.strain_rates = state.study.strain_rates;
   out.branch_strains = state.branch_strains;
-  out.total_rotations = state.total_rotations;
+  out.study.total_rotations = state.study.total_rotations;
   out.commands = state.commands;
   out.wrenches = state.wrenches;
   out.efforts = state.efforts;

@@ -104,7 +104,7 @@ std::vector<MassPointState> mass_points(const Model& model, const std::vector<No
   Model placed = model;
   placed.nodes = poses;
   placed.initial_velocity = velocities;
-  return initial_state(placed).mass_points;
+  return initial_state(placed).study.mass_points;
 }
 
 }  // namespace
@@ -156,8 +156,8 @@ State with_closed_loops(const Model& model, const DegreesOfFreedom& dof, State s
     node.angular_velocity += node.orientation.conjugate() * Vector3(change.nodes[i].tail<3>());
   }
   const std::vector<MassPointState> turned = mass_points(model, poses, change.nodes);
-  for (std::size_t i = 0; i < state.mass_points.size(); ++i)
-    state.mass_points[i].angular_velocity += turned[i].angular_velocity;
+  for (std::size_t i = 0; i < state.study.mass_points.size(); ++i)
+    state.study.mass_points[i].angular_velocity += turned[i].angular_velocity;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
     if (actuator.drive.gear) continue;  // no impulse passes through an elastic gear

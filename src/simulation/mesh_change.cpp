@@ -76,7 +76,7 @@ class MeshChange {
           out_.branch_strains[branches_ * to + b] = state_.branch_strains[branches_ * from + b];
       }
       for (int k = 0; k < Own::kMassPoints; ++k)
-        out_.mass_points[own.first_mass_point + k] = state_.mass_points[old.first_mass_point + k];
+        out_.study.mass_points[own.first_mass_point + k] = state_.study.mass_points[old.first_mass_point + k];
     });
   }
 
@@ -148,7 +148,7 @@ class MeshChange {
     for (std::size_t i = 0; i < old_nodes_.size(); ++i) {
       if (old_nodes_[i] < 0) continue;
       out_.nodes[i] = state_.nodes[old_nodes_[i]];
-      if (!state_.reactions.empty()) out_.reactions[i] = state_.reactions[old_nodes_[i]];
+      if (!state_.study.reactions.empty()) out_.study.reactions[i] = state_.study.reactions[old_nodes_[i]];
     }
   }
 
@@ -243,11 +243,11 @@ State on_changed_mesh(const Model& before, const State& state, const Model& afte
 State sized_for(const Model& model, State state) {
   state.halved = model.halved;
   state.nodes.resize(model.nodes.size());
-  state.mass_points.resize(model.mass_point_count);
-  state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
+  state.study.mass_points.resize(model.mass_point_count);
+  state.study.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
   state.branch_strains.assign(model.stiffness_point_count * model.maxwell_branches, Vector6::Zero());
   if (!state.strain_memory.empty()) state.strain_memory.assign(model.stiffness_point_count, {});
-  if (!state.reactions.empty()) state.reactions.assign(model.nodes.size(), Vector6::Zero());
+  if (!state.study.reactions.empty()) state.study.reactions.assign(model.nodes.size(), Vector6::Zero());
   return state;
 }
 

@@ -270,8 +270,8 @@ State initial_state(const Model& model, double time) {
   state.origin = model.initial_origin;
   state.halved = model.halved;
   state.released = model.initial_released;
-  state.mass_points.resize(model.mass_point_count);
-  state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
+  state.study.mass_points.resize(model.mass_point_count);
+  state.study.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
   state.branch_strains.assign(static_cast<std::size_t>(model.stiffness_point_count) * model.maxwell_branches,
                               Vector6::Zero());
   state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
@@ -320,7 +320,7 @@ State initial_state(const Model& model, double time) {
       Vector3 spin = Vector3::Zero();
       for (int i = 0; i < N; ++i)
         spin += generalised.values[i] * model.initial_velocity[element.nodes[i]].template tail<3>();
-      state.mass_points[element.first_mass_point + k].angular_velocity = rotation.transpose() * spin;
+      state.study.mass_points[element.first_mass_point + k].angular_velocity = rotation.transpose() * spin;
     }
   });
   return state;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elements/nodal_inertia.h"
+#include "elements/node_motion.h"
 #include "joints/kinematics.h"
 #include "math/cayley.h"
 #include "math/pi.h"

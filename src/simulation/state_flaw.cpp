@@ -46,8 +46,8 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
   const auto of_nodes = [&](std::size_t initial_size) { return initial_size == 0 ? 0 : initial_size + left; };
   flaw.require_size("the number of nodes", state.nodes.size(), of_nodes(initial.nodes.size()));
   flaw.require_size("the number of joints", state.released.size(), initial.released.size());
-  flaw.require_size("the number of mass points", state.mass_points.size(), initial.mass_points.size());
-  flaw.require_size("the number of strain rates", state.strain_rates.size(), initial.strain_rates.size());
+  flaw.require_size("the number of mass points", state.study.mass_points.size(), initial.study.mass_points.size());
+  flaw.require_size("the number of strain rates", state.study.strain_rates.size(), initial.study.strain_rates.size());
   flaw.require_size("the number of strains of Maxwell elements", state.branch_strains.size(),
                     initial.branch_strains.size());
   flaw.require_size("the number of commands", state.commands.size(), initial.commands.size());
@@ -66,17 +66,17 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
     flaw.require_size("the number of a servo's outputs", state.actuators[i].servo.outputs.size(),
                       initial.actuators[i].servo.outputs.size());
   flaw.require_size("the number of strain memories", state.strain_memory.size(), initial.strain_memory.size());
-  flaw.require_size("the number of rotations of stiffness points", state.stiffness_rotations.size(),
-                    initial.stiffness_rotations.size());
-  flaw.require_size("the number of rotations of mass points", state.mass_rotations.size(),
-                    initial.mass_rotations.size());
-  flaw.require_size("the number of total rotations", state.total_rotations.size(),
-                    of_nodes(initial.total_rotations.size()));
-  flaw.require_size("the number of nodal forces", state.forces.size(), of_nodes(initial.forces.size()));
-  flaw.require_size("the number of momentum rates", state.momentum_rates.size(),
-                    of_nodes(initial.momentum_rates.size()));
-  if (!state.reactions.empty())
-    flaw.require_size("the number of reactions", state.reactions.size(), state.nodes.size());
+  flaw.require_size("the number of rotations of stiffness points", state.study.stiffness_rotations.size(),
+                    initial.study.stiffness_rotations.size());
+  flaw.require_size("the number of rotations of mass points", state.study.mass_rotations.size(),
+                    initial.study.mass_rotations.size());
+  flaw.require_size("the number of total rotations", state.study.total_rotations.size(),
+                    of_nodes(initial.study.total_rotations.size()));
+  flaw.require_size("the number of nodal forces", state.study.forces.size(), of_nodes(initial.study.forces.size()));
+  flaw.require_size("the number of momentum rates", state.study.momentum_rates.size(),
+                    of_nodes(initial.study.momentum_rates.size()));
+  if (!state.study.reactions.empty())
+    flaw.require_size("the number of reactions", state.study.reactions.size(), state.nodes.size());
 }
 
 void check_servos(const Model& built, const State& state, Flaw& flaw) {

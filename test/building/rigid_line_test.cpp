@@ -252,7 +252,7 @@ TEST(RigidLine, LeavesNothingOfBeamsToAStep) {
   EXPECT_EQ(model.stiffness_point_count, 0);
   EXPECT_EQ(model.mass_point_count, 0);
   const State& state = state_of(simulation);
-  EXPECT_TRUE(state.mass_points.empty() && state.strain_rates.empty() && state.strain_memory.empty());
+  EXPECT_TRUE(state.study.mass_points.empty() && state.study.strain_rates.empty() && state.strain_memory.empty());
   EXPECT_EQ(simulation.energies().strain, 0);
 }
 

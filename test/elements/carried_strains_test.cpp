@@ -1,10 +1,10 @@
 // Tests the strains that Newton's method carries from one iteration to the next (docs/notes/newton.md).
 #include "elements/conserving_kernel.h"
-#include "elements/endpoint_beam.h"
 #include "elements/kernel_checks.h"
-#include "elements/momentum_beam.h"
 #include "elements/tested_step.h"
 #include "schemes/scheme.h"
+#include "study_schemes/momentum_beam.h"
+#include "study_schemes/newmark_beam.h"
 
 namespace flexarm {
 namespace {

@@ -4,12 +4,12 @@
 #include <random>
 
 #include "building/beam_mesh.h"
-#include "elements/beam_point.h"
 #include "math/cayley.h"
 #include "math/pi.h"
 #include "math/so3.h"
 #include "model/state.h"
 #include "schemes/time_rule.h"
+#include "study_schemes/element_nodes.h"
 
 namespace flexarm::test {
 

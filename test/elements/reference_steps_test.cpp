@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "building/beam_mesh.h"
-#include "elements/average_rotary.h"
 #include "elements/conserving_kernel.h"
 #include "elements/differences.h"
-#include "elements/endpoint_beam.h"
-#include "elements/nodal_inertia.h"
 #include "schemes/scheme.h"
+#include "study_schemes/average_rotary.h"
+#include "study_schemes/newmark_beam.h"
+#include "study_schemes/nodal_inertia.h"
 #include "support/node_poses.h"
 #include "support/source_path.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Length, rule and round-off of the step in tests of elements and nodes.
 
-#include "elements/newmark_rule.h"
+#include "study_schemes/newmark_rule.h"
 
 namespace flexarm::test {
 

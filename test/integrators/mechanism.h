@@ -162,8 +162,8 @@ inline State random_state(const Model& model, RandomSource& random, double size)
     state.nodes[node].position = poses[node].position;
     state.nodes[node].orientation = poses[node].orientation;
   }
-  for (MassPointState& point : state.mass_points) point = {random.vector(), random.vector()};
-  for (Vector6& rate : state.strain_rates) rate = random.vector6();
+  for (MassPointState& point : state.study.mass_points) point = {random.vector(), random.vector()};
+  for (Vector6& rate : state.study.strain_rates) rate = random.vector6();
   for (Vector6& strain : state.branch_strains) strain = size * random.vector6();
   return state;
 }

@@ -28,11 +28,11 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
     RandomSource of_memory(7);  // a generator of its own, so that all other random values are the same for all schemes
     for (StrainMemory& memory : state.strain_memory)
       memory = {0.1 * of_memory.vector6(), of_memory.vector6(), of_memory.vector6()};
-    for (Vector6& force : state.forces) force = random.vector6();
-    if (scheme().hht != HhtForm::None) state.reactions.resize(state.nodes.size());
-    for (Vector6& reaction : state.reactions) reaction = random.vector6();
-    for (Vector3& rate : state.momentum_rates) rate = random.vector();
-    for (Vector3& rotation : state.total_rotations) rotation = 0.1 * random.vector();
+    for (Vector6& force : state.study.forces) force = random.vector6();
+    if (scheme().hht != HhtForm::None) state.study.reactions.resize(state.nodes.size());
+    for (Vector6& reaction : state.study.reactions) reaction = random.vector6();
+    for (Vector3& rate : state.study.momentum_rates) rate = random.vector();
+    for (Vector3& rotation : state.study.total_rotations) rotation = 0.1 * random.vector();
     return state;
   }
 

@@ -29,9 +29,9 @@ void add_increment(const BeamElement<Nodes>& element, const State& begin, const 
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& point = element.stiffness_points[k];
     const int index = element.first_stiffness_point + k;
-    const PointKinematics p0 = point_kinematics(begin.stiffness_rotations[index],
+    const PointKinematics p0 = point_kinematics(begin.study.stiffness_rotations[index],
                                                 interpolate<Nodes>(point.derivative, r0), point.reference_strain),
-                          p1 = point_kinematics(end.stiffness_rotations[index],
+                          p1 = point_kinematics(end.study.stiffness_rotations[index],
                                                 interpolate<Nodes>(point.derivative, r1), point.reference_strain);
     const Vector6 stress = point.stiffness * (0.5 * (p0.strain + p1.strain));
     const Vector3 n = 0.5 * (p0.rotation + p1.rotation) * stress.head<3>();
@@ -146,7 +146,7 @@ Simulation vibrating(const std::string& scheme, double step, double amplitude) {
   }
   for_each_element(model_of(simulation).beams, [&](const auto& element) {
     for (std::size_t k = 0; k < element.mass_points.size(); ++k) {
-      Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
+      Vector3& W = state.study.mass_points[element.first_mass_point + k].angular_velocity;
       W.setZero();
       for (std::size_t i = 0; i < element.nodes.size(); ++i)
         W += element.mass_points[k].shape[i] * state.nodes[element.nodes[i]].angular_velocity;
@@ -262,7 +262,7 @@ CurvatureChange turned_curvature(const Model& model, const State& begin, const S
     const LocalRotations<N> local(end_plain), local_turned(end_turned);
     for (int k = 0; k < N - 1; ++k) {
       const auto& point = element.stiffness_points[k];
-      const PointRotation& reference = begin.stiffness_rotations[element.first_stiffness_point + k];
+      const PointRotation& reference = begin.study.stiffness_rotations[element.first_stiffness_point + k];
       GeneralisedShapeFunctions<N> unused;
       const Vector3 change = b.evaluate(point.shape, point.derivative, reference, unused).curvature -
                              a.evaluate(point.shape, point.derivative, reference, unused).curvature;

@@ -16,7 +16,7 @@ State reversed(State state, double factor = 1) {
     node.angular_velocity *= -factor;
     node.mean_spin *= -factor;
   }
-  for (MassPointState& point : state.mass_points) point.angular_velocity *= -factor;
+  for (MassPointState& point : state.study.mass_points) point.angular_velocity *= -factor;
   state.history.clear();
   return state;
 }

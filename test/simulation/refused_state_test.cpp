@@ -127,7 +127,7 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"angular velocity is nan", [](State& s) { s.nodes[4].angular_velocity.y() = kNan; }},
       {"an effort is nan", [](State& s) { s.efforts[1] = kNan; }},
       {"an increment is nan", [](State& s) { s.history.increments[1][2] = kNan; }},
-      {"a reaction is nan", [](State& s) { s.reactions[3][2] = kNan; }},
+      {"a reaction is nan", [](State& s) { s.study.reactions[3][2] = kNan; }},
       {"norm of a node's orientation is 1.1", [](State& s) { s.nodes[4].orientation.coeffs() *= 1.1; }},
       {"norm of a joint's rotation is 0", [](State& s) { s.released[2].rotation.coeffs().setZero(); }},
       {"a mark of rest is 0.5", [](State& s) { s.rests[2] = 0.5; }},
@@ -141,10 +141,10 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"left its line is 2, expected one that may", [](State& s) { s.left_lines = {2}; }},
       {"left its line is 1000, expected one that may", [](State& s) { s.left_lines = {1000}; }},
       {"number of nodes", [](State& s) { s.nodes.pop_back(); }},
-      {"number of mass points", [](State& s) { s.mass_points.pop_back(); }},
-      {"number of strain rates", [](State& s) { s.strain_rates.clear(); }},
-      {"number of nodal forces", [](State& s) { s.forces.clear(); }},
-      {"number of reactions", [](State& s) { s.reactions.pop_back(); }},
+      {"number of mass points", [](State& s) { s.study.mass_points.pop_back(); }},
+      {"number of strain rates", [](State& s) { s.study.strain_rates.clear(); }},
+      {"number of nodal forces", [](State& s) { s.study.forces.clear(); }},
+      {"number of reactions", [](State& s) { s.study.reactions.pop_back(); }},
   };
   for (const auto& [told, change] : changes) {
     const State before = state_of(simulation);
