@@ -78,8 +78,8 @@ TEST(StaticFriction, FallsAlongItsCurve) {
 // A block of 2 kg that a spring of 200 N/m pulls, whose end moves with 0.1 m/s; friction of 4 N, 1.5 times as large at
 // rest. Where it rests after each slip: from an integration of the law with scipy, from event to event. (As the
 // Stribeck speed vanishes, a slip takes 2 (pi - atan(D w / V)) / w, D = 0.01 m, w = 10/s: 0.4712 s;
-// scripts/reference_stick_slip.py.) A step decides whether the block breaks away: up to a step late it slides on
-// farther by twice the way of the spring's end, and as much again at its stop.
+// elements/scripts/reference_stick_slip.py.) A step decides whether the block breaks away: up to a step late it slides
+// on farther by twice the way of the spring's end, and as much again at its stop.
 TEST(StaticFriction, SticksAndSlipsAsIntegratedFromEventToEvent) {
   struct Case {
     double stribeck, period, slip;

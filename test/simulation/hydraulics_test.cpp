@@ -1,5 +1,5 @@
-// Tests hydraulic cylinders in simulations: closed forms, independent solutions (scripts/reference_oil.py, by solve_ivp
-// of scipy with tolerances of 1e-13), and the account of energies.
+// Tests hydraulic cylinders in simulations: closed forms, independent solutions (elements/scripts/reference_oil.py, by
+// solve_ivp of scipy with tolerances of 1e-13), and the account of energies.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -105,7 +105,7 @@ TEST(Hydraulics, HaveTheFrequencyOfTheirOil) {
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.2);
 }
 
-// Large swings, voids, voids that are filled, and relief valves, against scripts/reference_oil.py.
+// Large swings, voids, voids that are filled, and relief valves, against reference_oil.py.
 TEST(Hydraulics, MoveAsTheDifferentialEquations) {
   struct Case {
     const char *name, *oil, *simulation;
