@@ -1,5 +1,4 @@
 /// Tests runs to an accuracy, and the search for settings, where nothing moves.
-#include <gtest/gtest.h>
 
 #include "accuracy/automatic_meshes.h"
 #include "accuracy/tuning.h"
@@ -12,28 +11,23 @@ namespace {
 
 /// A link on a hinge without weight.
 std::string link_at_rest(const std::string& scheme, const std::string& more = "") {
-  return R"(<robot name="rest"> <link name="world"/>
-    <link name="a"> <inertial> <origin xyz="0.5 0 0"/> <mass value="1"/>
-      <inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <joint name="h" type="revolute"> <parent link="world"/> <child link="a"/> <axis xyz="0 -1 0"/>
-      <limit lower="-3" upper="3" effort="100" velocity="5"/> </joint>)" +
-         more + R"(<simulation> <gravity xyz="0 0 )" + (more.empty() ? "0" : "-9.81") + R"("/>
-      <integrator scheme=")" +
-         scheme + R"("/> <initial equilibrium="true"/> <probe name="tip" link="a" at="1 0 0"/> </simulation> </robot>)";
+  return robot(body("a", 1, Vector3::Constant(0.05), {0.5, 0, 0}) +
+                   joint("h", "revolute", "world", "a",
+                         "<axis xyz='0 -1 0'/> <limit lower='-3' upper='3' effort='100' velocity='5'/>") +
+                   more,
+               gravity({0, 0, more.empty() ? 0 : -9.81}) + "<integrator scheme='" + scheme +
+                   "'/> <initial equilibrium='true'/> <probe name='tip' link='a' at='1 0 0'/>");
 }
 
 const char* const kServo = R"(<servo joint="h" mode="position" kp="400" kd="20" ki="800" set_point="0.3"/>)";
 
 /// A beam with a load at its end that rests in its equilibrium, with a mesh that the search may choose.
 std::string hanging_beam() {
-  return R"(<robot name="hanging"> <link name="world"/>
-    <link name="beam"> <beam> <centerline> <line to="0.6 0 0"/> </centerline> <circle radius="0.006"/>
-      <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
-    <link name="hand"> <inertial> <mass value="1"/>
-      <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="beam"/> </joint>
-    <joint name="grip" type="fixed"> <parent link="beam"/> <child link="hand"/> <origin xyz="0.6 0 0"/> </joint>
-    <simulation> <initial equilibrium="true"/> <probe name="hand" link="hand"/> </simulation> </robot>)";
+  return robot(R"(<link name="beam"> <beam> <centerline> <line to="0.6 0 0"/> </centerline> <circle radius="0.006"/>
+      <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>)" +
+                   body("hand", 1, Vector3::Constant(1e-3)) + joint("clamp", "fixed", "world", "beam") +
+                   joint("grip", "fixed", "beam", "hand", "<origin xyz='0.6 0 0'/>"),
+               "<initial equilibrium='true'/> <probe name='hand' link='hand'/>");
 }
 
 AccurateRun run_of(const scene::SceneDescription& scene, double accuracy) {

@@ -2,33 +2,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "flexarm/accuracy/accurate_run.h"
-#include "flexarm/scene/urdf_reader.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
 
-scene::SceneDescription read(const std::string& text) {
-  scene::ReadResult result = scene::read_scene_text(text, "case");
-  EXPECT_TRUE(result.scene.has_value());
-  return std::move(*result.scene);
-}
-
-/// A link on a hinge about `axis`, with its centre of mass at `centre` and `inertia` about it.
-std::string hinge(const std::string& axis, const std::string& centre, const std::string& inertia,
-                  const std::string& of_joint, const std::string& others, const std::string& simulation) {
-  return "<robot name='case'><link name='world'/><link name='a'><inertial><origin xyz='" + centre +
-         "'/><mass value='1'/><inertia ixx='" + inertia + "' iyy='" + inertia + "' izz='" + inertia +
-         "' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='h' type='" +
-         (of_joint.find("limit") == std::string::npos ? "continuous" : "revolute") +
-         "'><parent link='world'/><child link='a'/><axis xyz='" + axis + "'/>" + of_joint + "</joint>" + others +
-         "<simulation>" + simulation + "</simulation></robot>";
+/// A link of 1 kg on a hinge about `axis`, with its centre of mass at `centre` and `moment` of inertia about it.
+scene::SceneDescription hinge(const std::string& axis, const Vector3& centre, double moment,
+                              const std::string& of_joint, const std::string& others, const std::string& entries) {
+  const char* const type = of_joint.find("limit") == std::string::npos ? "continuous" : "revolute";
+  return scene_of(robot(body("a", 1, Vector3::Constant(moment), centre) +
+                            joint("h", type, "world", "a", "<axis xyz='" + axis + "'/>" + of_joint) + others,
+                        entries));
 }
 
 /// The true error of a run, at every tenth of its time, and the run's own estimate.
@@ -53,9 +42,9 @@ TEST(Corners, JumpsOfLoadsAreEndsOfSteps) {
   for (const double jump : {0.3125, 1 / M_PI, std::sqrt(0.5)}) {
     const std::string time = std::to_string(jump);
     const double at = std::stod(time);
-    const scene::SceneDescription scene = read(hinge("0 0 1", "0 0 0", "1", "", "",
-                                                     "<gravity xyz='0 0 0'/><effort joint='h' history='t &lt; " + time +
-                                                         " ? 3 : -3'/><probe name='p' link='a' at='1 0 0'/>"));
+    const scene::SceneDescription scene = hinge("0 0 1", {0, 0, 0}, 1, "", "",
+                                                "<gravity xyz='0 0 0'/><effort joint='h' history='t &lt; " + time +
+                                                    " ? 3 : -3'/><probe name='p' link='a' at='1 0 0'/>");
     Trajectory truth;
     for (int i = 0; i <= 10; ++i) {
       const double t = 0.1 * i, behind = std::max(t - at, 0.0), angle = 1.5 * t * t - 3 * behind * behind;
@@ -75,12 +64,9 @@ TEST(Corners, StrikesOfServosTakeNoTime) {
   const double mass = 2, kp = 250, kd = 20, jump = 0.3;
   const double decay = kd / (2 * mass), rate = std::sqrt(kp / mass - decay * decay);
   for (const char* at : {"0.5", "0.3137"}) {  // one is the end of an interval
-    const std::string text =
-        "<robot name='case'><link name='world'/><link name='a'><inertial><mass value='2'/><inertia ixx='1' iyy='1' "
-        "izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='rail' type='prismatic'><parent link='world'/>"
-        "<child link='a'/><axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='0' velocity='9'/></joint><servo "
-        "joint='rail' mode='position' kp='250' kd='20' set_point='t &lt; " +
-        std::string(at) + " ? 0 : 0.3'/><simulation><gravity xyz='0 0 0'/></simulation></robot>";
+    const std::string parts = body("a", 2) + rail("rail", "a", "1 0 0") +
+                              "<servo joint='rail' mode='position' kp='250' kd='20' set_point='t &lt; " + at +
+                              " ? 0 : 0.3'/>";
     Trajectory truth;
     for (int i = 0; i <= 10; ++i) {
       const double t = std::max(0.1 * i - std::stod(at), 0.0);
@@ -88,7 +74,7 @@ TEST(Corners, StrikesOfServosTakeNoTime) {
       truth.emplace_back(0.1 * i < std::stod(at) ? 0 : jump * (1 - left), 0, 0);
     }
     for (const char* scheme : {"auto", "em", "em4"}) {
-      scene::SceneDescription scene = read(text);
+      scene::SceneDescription scene = scene_of(robot(parts, gravity({0, 0, 0})));
       scene.integrator.scheme = scheme;
       for (const double accuracy : {1e-3, 1e-6}) {
         const Outcome run = outcome(scene, 1, accuracy, truth);
@@ -173,9 +159,9 @@ class CutServo {
 };
 
 TEST(Corners, LimitsOfMotorsAreFound) {
-  const scene::SceneDescription scene = read(hinge(
-      "0 0 1", "0 0 0", "1", "", "<servo joint='h' mode='position' kp='100' kd='2' set_point='1' effort_limit='10'/>",
-      "<gravity xyz='0 0 0'/><probe name='p' link='a' at='1 0 0'/>"));
+  const scene::SceneDescription scene = hinge(
+      "0 0 1", {0, 0, 0}, 1, "", "<servo joint='h' mode='position' kp='100' kd='2' set_point='1' effort_limit='10'/>",
+      "<gravity xyz='0 0 0'/><probe name='p' link='a' at='1 0 0'/>");
   Trajectory truth;
   CutServo servo;
   for (int i = 0; i <= 10; ++i) {
@@ -198,11 +184,11 @@ struct Case {
 
 /// Positions at multiples of `until` / 10 by scipy: scripts/outside_references, DOP853 with 1e-12 and located events.
 std::vector<Case> cases() {
-  const std::string down = "<gravity xyz='0 0 -9.81'/>", weightless = "<gravity xyz='0 0 0'/>";
+  const std::string down = gravity({0, 0, -9.81}), weightless = gravity({0, 0, 0});
   std::vector<Case> out;
   out.push_back({"a pendulum falls on its stop",
-                 read(hinge("0 -1 0", "0.5 0 0", "0.05", "<limit lower='-0.4' upper='1.6' effort='0' velocity='0'/>",
-                            "", down + "<initial joint='h' position='1'/><probe name='tip' link='a' at='1 0 0'/>")),
+                 hinge("0 -1 0", {0.5, 0, 0}, 0.05, "<limit lower='-0.4' upper='1.6' effort='0' velocity='0'/>", "",
+                       down + "<initial joint='h' position='1'/><probe name='tip' link='a' at='1 0 0'/>"),
                  3,
                  {1e-3, 1e-4, 1e-5},
                  {{0.540302306, 0, 0.841470985},
@@ -217,9 +203,9 @@ std::vector<Case> cases() {
                   {0.921001569, 0, -0.389558866},
                   {0.921001569, 0, -0.389558866}}});
   out.push_back({"Coulomb friction, pushed to and fro",
-                 read(hinge("0 -1 0", "0 0 -0.5", "0.05", "<dynamics friction='0.5'/><friction law='coulomb'/>", "",
-                            down + "<initial joint='h' position='1.2'/><effort joint='h' history='1.5*sin(6*t)'/>"
-                                   "<probe name='tip' link='a' at='0 0 -1'/>")),
+                 hinge("0 -1 0", {0, 0, -0.5}, 0.05, "<dynamics friction='0.5'/><friction law='coulomb'/>", "",
+                       down + "<initial joint='h' position='1.2'/><effort joint='h' history='1.5*sin(6*t)'/>"
+                              "<probe name='tip' link='a' at='0 0 -1'/>"),
                  4,
                  {1e-3, 1e-4, 1e-5},
                  {{0.932039086, 0, -0.362357754},
@@ -234,9 +220,9 @@ std::vector<Case> cases() {
                   {0.187809460, 0, -0.982205481},
                   {-0.025137446, 0, -0.999684004}}});
   out.push_back({"smooth friction, pushed to and fro",
-                 read(hinge("0 -1 0", "0 0 -0.5", "0.05", "<dynamics friction='0.7'/>", "",
-                            down + "<initial joint='h' position='1'/><effort joint='h' history='2*sin(2.5*t)'/>"
-                                   "<probe name='tip' link='a' at='0 0 -1'/>")),
+                 hinge("0 -1 0", {0, 0, -0.5}, 0.05, "<dynamics friction='0.7'/>", "",
+                       down + "<initial joint='h' position='1'/><effort joint='h' history='2*sin(2.5*t)'/>"
+                              "<probe name='tip' link='a' at='0 0 -1'/>"),
                  4,
                  {1e-3, 1e-4, 1e-5},
                  {{0.841470985, 0, -0.540302306},
@@ -250,45 +236,41 @@ std::vector<Case> cases() {
                   {0.731097079, 0, -0.682273450},
                   {0.590026389, 0, -0.807383961},
                   {-0.182044175, 0, -0.983290353}}});
-  out.push_back(
-      {"a gear with play",
-       read(hinge("0 0 1", "0 0 0", "0.35", "",
-                  "<drive joint='h' gear='60' rotor_inertia='3e-05' stiffness='2000' damping='1' "
-                  "backlash='0.05'/>",
-                  weightless + "<effort joint='h' history='2*sin(6*t)'/><probe name='tip' link='a' at='1 0 0'/>")),
-       4,
-       {1e-2, 1e-3},
-       {{1, 0, 0},
-        {0.979241943, 0.202694884, 0},
-        {0.760771536, 0.649019776, 0},
-        {0.716047809, 0.698051241, 0},
-        {0.377225381, 0.926121489, 0},
-        {0.045044459, 0.998984983, 0},
-        {-0.056110989, 0.998424537, 0},
-        {-0.546746989, 0.837297874, 0},
-        {-0.659532320, 0.751676206, 0},
-        {-0.842251329, 0.539085058, 0},
-        {-0.992947660, 0.118553553, 0}}});
+  out.push_back({"a gear with play",
+                 hinge("0 0 1", {0, 0, 0}, 0.35, "",
+                       "<drive joint='h' gear='60' rotor_inertia='3e-05' stiffness='2000' damping='1' "
+                       "backlash='0.05'/>",
+                       weightless + "<effort joint='h' history='2*sin(6*t)'/><probe name='tip' link='a' at='1 0 0'/>"),
+                 4,
+                 {1e-2, 1e-3},
+                 {{1, 0, 0},
+                  {0.979241943, 0.202694884, 0},
+                  {0.760771536, 0.649019776, 0},
+                  {0.716047809, 0.698051241, 0},
+                  {0.377225381, 0.926121489, 0},
+                  {0.045044459, 0.998984983, 0},
+                  {-0.056110989, 0.998424537, 0},
+                  {-0.546746989, 0.837297874, 0},
+                  {-0.659532320, 0.751676206, 0},
+                  {-0.842251329, 0.539085058, 0},
+                  {-0.992947660, 0.118553553, 0}}});
   return out;
 }
 
 /// A flexible arm falls on its stop. The hit starts waves, so that tries agree by chance. There is no closed form;
 /// steps of `em4` that are 40 times shorter than those of any try have errors of some 1e-7.
 TEST(Corners, HitsOfFlexibleArms) {
-  const scene::SceneDescription scene = read(
-      "<robot name='case'><link name='world'/><link name='a'><beam elements='4' order='2'><centerline><line to='1 0 "
-      "0'/>"
-      "</centerline><circle radius='0.01'/><material young='70e9' poisson='0.33' density='2700'/>"
-      "<damping stiffness_proportional='1e-3'/></beam></link><joint name='h' type='revolute'><parent link='world'/>"
-      "<child link='a'/><axis xyz='0 0 1'/><limit lower='-0.539' upper='1' effort='0' velocity='0'/></joint>"
-      "<simulation><gravity xyz='0 -9.81 0'/><probe name='p' link='a' at='1 0 0'/></simulation></robot>");
-  SimulationOptions options;
-  options.scheme = "em4";
-  options.step = 4e-5;
-  Simulation fine(scene, options);
+  const scene::SceneDescription scene =
+      scene_of(robot("<link name='a'><beam elements='4' order='2'><centerline><line to='1 0 0'/></centerline><circle "
+                     "radius='0.01'/><material young='70e9' poisson='0.33' density='2700'/><damping "
+                     "stiffness_proportional='1e-3'/></beam></link>" +
+                         joint("h", "revolute", "world", "a",
+                               "<axis xyz='0 0 1'/><limit lower='-0.539' upper='1' effort='0' velocity='0'/>"),
+                     gravity({0, -9.81, 0}) + "<probe name='p' link='a' at='1 0 0'/>"));
+  Simulation fine(scene, options("em4", 4e-5));
   Trajectory truth = {fine.probe(0).pose.position};
   while (fine.time() < 0.8 - 1e-9) {
-    for (int n = 0; n < 2000; ++n) ASSERT_TRUE(fine.step().converged);
+    run(fine, 2000);
     truth.push_back(fine.probe(0).pose.position);
   }
   for (const double accuracy : {1e-3, 1e-4, 1e-5}) EXPECT_LE(outcome(scene, 0.8, accuracy, truth).error, accuracy);

@@ -1,8 +1,4 @@
 /// Tests runs to an accuracy in which bodies hit each other, against motions that scipy has computed with events.
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/accuracy/companion.h"
@@ -19,28 +15,21 @@ struct Hits {
   std::vector<Trajectory> motions;  ///< of the probes, at tenths of the time [m]
 };
 
-std::string ball(const std::string& name, const std::string& radius, const std::string& mass,
-                 const std::string& inertia, const std::string& at = "0 0 0") {
-  return "<link name='" + name + "'><inertial><origin xyz='" + at + "'/><mass value='" + mass + "'/><inertia ixx='" +
-         inertia + "' iyy='" + inertia + "' izz='" + inertia +
-         "' ixy='0' ixz='0' iyz='0'/></inertial><collision><origin xyz='" + at + "'/><geometry><sphere radius='" +
-         radius + "'/></geometry></collision></link>";
+/// A ball that may touch others, with its centre at `at`.
+std::string hitting(const std::string& name, double radius, double mass, double moment,
+                    const Vector3& at = Vector3::Zero()) {
+  return body(name, mass, Vector3::Constant(moment), at, collision(fmt::format("<sphere radius='{}'/>", radius), at));
 }
 
-std::string floating(const std::string& name, const std::string& at) {
-  return "<joint name='free_" + name + "' type='floating'><parent link='world'/><child link='" + name +
-         "'/><origin xyz='" + at + "'/></joint>";
+std::string flying(const std::string& name, const std::string& at) {
+  return joint("free_" + name, "floating", "world", name, "<origin xyz='" + at + "'/>");
 }
 
-std::string robot(const std::string& parts, const std::string& simulation) {
-  return "<robot name='hits'><link name='world'/>" + parts + "<simulation>" + simulation + "</simulation></robot>";
-}
-
-const std::string kWeight = "<gravity xyz='0 -9.81 0'/>";
+const std::string kWeight = gravity({0, -9.81, 0});
 
 Hits bouncing_ball() {
-  return {robot("<ground name='floor' normal='0 1 0'/>" + ball("b", "0.04", "0.3", "0.0012") +
-                    floating("b", "0 0.4 0") + "<contact first='b' second='floor' restitution='0.6' stiffness='2e4'/>",
+  return {robot("<ground name='floor' normal='0 1 0'/>" + hitting("b", 0.04, 0.3, 0.0012) + flying("b", "0 0.4 0") +
+                    "<contact first='b' second='floor' restitution='0.6' stiffness='2e4'/>",
                 kWeight + "<initial link='b' linear='0.2 0 0'/><probe name='b' link='b'/>"),
           1.2,
           {{{0, 0.4, 0},
@@ -58,29 +47,28 @@ Hits bouncing_ball() {
 
 /// A pendulum that swings against a wall, and meets it anywhere in the steps.
 Hits pendulum_on_wall() {
-  return {
-      robot("<ground name='wall' normal='1 0 0' offset='-0.05'/>" + ball("b", "0.05", "0.8", "0.0032", "0 -0.5 0") +
-                "<joint name='h' type='continuous'><parent link='world'/><child link='b'/><axis xyz='0 0 1'/></joint>"
-                "<contact first='b' second='wall' restitution='0.8' stiffness='3e4'/>",
-            kWeight + "<initial joint='h' position='0.7'/><probe name='b' link='b' at='0 -0.5 0'/>"),
-      1.5,
-      {{{0.322108844, -0.382421094, 0},
-        {0.267269871, -0.422571670, 0},
-        {0.101275444, -0.489635869, 0},
-        {0.089276315, -0.491965181, 0},
-        {0.222176908, -0.447925688, 0},
-        {0.263521354, -0.424919399, 0},
-        {0.207453473, -0.454931925, 0},
-        {0.063266760, -0.495981166, 0},
-        {0.084543224, -0.492800612, 0},
-        {0.186791204, -0.463798497, 0},
-        {0.212592639, -0.452553168, 0}}}};
+  return {robot("<ground name='wall' normal='1 0 0' offset='-0.05'/>" + hitting("b", 0.05, 0.8, 0.0032, {0, -0.5, 0}) +
+                    joint("h", "continuous", "world", "b", "<axis xyz='0 0 1'/>") +
+                    "<contact first='b' second='wall' restitution='0.8' stiffness='3e4'/>",
+                kWeight + "<initial joint='h' position='0.7'/><probe name='b' link='b' at='0 -0.5 0'/>"),
+          1.5,
+          {{{0.322108844, -0.382421094, 0},
+            {0.267269871, -0.422571670, 0},
+            {0.101275444, -0.489635869, 0},
+            {0.089276315, -0.491965181, 0},
+            {0.222176908, -0.447925688, 0},
+            {0.263521354, -0.424919399, 0},
+            {0.207453473, -0.454931925, 0},
+            {0.063266760, -0.495981166, 0},
+            {0.084543224, -0.492800612, 0},
+            {0.186791204, -0.463798497, 0},
+            {0.212592639, -0.452553168, 0}}}};
 }
 
 /// Two free balls that meet obliquely.
 Hits two_balls() {
-  return {robot(ball("a", "0.08", "1", "0.004") + floating("a", "0 0 0") + ball("b", "0.06", "0.4", "0.0016") +
-                    floating("b", "0.5 0.05 0") + "<contact first='a' second='b' restitution='0.7' stiffness='2e4'/>",
+  return {robot(hitting("a", 0.08, 1, 0.004) + flying("a", "0 0 0") + hitting("b", 0.06, 0.4, 0.0016) +
+                    flying("b", "0.5 0.05 0") + "<contact first='a' second='b' restitution='0.7' stiffness='2e4'/>",
                 "<gravity xyz='0 0 0'/><initial link='a' linear='1.5 0 0'/><initial link='b' linear='-1 0 0'/>"
                 "<probe name='a' link='a'/><probe name='b' link='b'/>"),
           0.6,

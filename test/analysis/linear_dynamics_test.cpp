@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include "building/model_builder.h"
 #include "simulation/observables.h"
 #include "support/dense_solution.h"
@@ -124,19 +122,15 @@ TEST(LinearDynamics, OfAFlexibleArmInMotion) {
 
 /// A box that falls onto a floor at 1 m/s, 1 mm above it, with a swinging body on a damped line.
 Model falling_box(const std::string& contact) {
-  return build_model(scene_of(R"(<robot name="fall"> <ground name="floor"/> <link name="world"/>
-    <joint name="guide" type="prismatic"> <parent link="world"/> <child link="box"/> <origin xyz="0 0 0.101"/>
-      <axis xyz="0 0 1"/> <limit lower="-1" upper="1" effort="0" velocity="0"/> </joint>
-    <link name="box"> <inertial> <mass value="1"/>
-      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial>
-      <collision> <geometry> <box size="0.2 0.2 0.2"/> </geometry> </collision> </link>
-    <joint name="hinge" type="continuous"> <parent link="box"/> <child link="arm"/> <origin xyz="0 0 1"/>
-      <axis xyz="0 1 0"/> <dynamics damping="0.3"/> </joint>
-    <link name="arm"> <inertial> <origin xyz="0.3 0 0"/> <mass value="0.5"/>
-      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <tendon name="line" ea="30" damping="4" rest_length="0.5"> <via link="world" at="0.5 0 2"/>
-      <via link="arm" at="0.3 0 0"/> </tendon> )" +
-                              contact + "</robot>"));
+  return build_model(scene_of(robot(
+      "<ground name='floor'/>" +
+      joint("guide", "prismatic", "world", "box", "<origin xyz='0 0 0.101'/><axis xyz='0 0 1'/>" + kFarLimits) +
+      body("box", 1, Vector3::Constant(0.01), Vector3::Zero(), collision("<box size='0.2 0.2 0.2'/>")) +
+      joint("hinge", "continuous", "box", "arm", "<origin xyz='0 0 1'/><axis xyz='0 1 0'/><dynamics damping='0.3'/>") +
+      body("arm", 0.5, Vector3::Constant(0.01), {0.3, 0, 0}) +
+      "<tendon name='line' ea='30' damping='4' rest_length='0.5'> <via link='world' at='0.5 0 2'/>"
+      "<via link='arm' at='0.3 0 0'/> </tendon>" +
+      contact)));
 }
 
 // The poses from which differences along the motion are taken are centimetres apart, and the box touches at some of

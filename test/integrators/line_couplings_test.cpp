@@ -2,11 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "flexarm/scene/urdf_reader.h"
 #include "integrators/scheme_step.h"
 #include "support/dense_solution.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -41,9 +39,7 @@ constexpr const char* kAlongTheArm = R"(<via link="world" at="-0.1 0 0.05"/>
 
 /// Returns the model of a scene in which so many tendons should have pieces.
 Model model_with(const std::string& text, int in_pieces) {
-  const scene::ReadResult read = scene::read_scene_text(text, "lines.urdf");
-  EXPECT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-  Model model = build_model(read.scene.value());
+  Model model = build_model(scene_of(text));
   int count = 0;
   for (const auto& element : model.force_elements) count += element->pieces().pairs.empty() ? 0 : 1;
   EXPECT_EQ(count, in_pieces) << text;

@@ -3,40 +3,30 @@
 #include <cmath>
 #include <map>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "math/pi.h"
 #include "reference/contact_scenes.h"
 
-namespace flexarm::test::rollers {
+namespace flexarm::test::touching {
 namespace {
 
 /// A beam of 2 m, clamped to a carriage at its middle, lies on two rollers that are fixed to the world, at 0.6 m to
 /// both sides.
 Simulation beam_on_two_rollers(int elements) {
-  const std::string section =
-      "<section ea=\"1e7\" ga2=\"1e7\" ga3=\"1e7\" gj=\"100\" ei2=\"50\" ei3=\"50\" mass=\"0.8\" j1=\"1e-4\" "
-      "j2=\"5e-5\" j3=\"5e-5\"/>";
-  std::string parts =
-      "<link name=\"carriage\"><inertial><mass value=\"1e-4\"/><inertia ixx=\"1e-6\" iyy=\"1e-6\" izz=\"1e-6\" "
-      "ixy=\"0\" "
-      "ixz=\"0\" iyz=\"0\"/></inertial></link><joint name=\"up\" type=\"prismatic\"><parent link=\"world\"/>"
-      "<child link=\"carriage\"/><axis xyz=\"0 0 1\"/><limit effort=\"1e9\" velocity=\"1e9\" lower=\"-1\" upper=\"1\"/>"
-      "</joint>";
+  std::string parts = body("carriage", 1e-4, Vector3::Constant(1e-6)) + rail("up", "carriage", "0 0 1");
   for (const int side : {1, -1}) {
     const std::string name = side > 0 ? "right" : "left";
     parts += fmt::format(
-        "<link name=\"{0}\"><beam elements=\"{1}\" order=\"2\"><centerline><line to=\"{2} 0 0\"/></centerline>"
-        "<orientation y=\"0 1 0\"/>{3}</beam></link><joint name=\"of_{0}\" type=\"fixed\"><parent link=\"carriage\"/>"
-        "<child link=\"{0}\"/></joint><link name=\"{0}_roller\"><collision><geometry><cylinder radius=\"0.05\" "
-        "length=\"0.2\"/></geometry></collision></link><joint name=\"of_{0}_roller\" type=\"fixed\">"
-        "<parent link=\"world\"/><child link=\"{0}_roller\"/><origin xyz=\"{4} 0 {5:.17g}\" rpy=\"{6:.17g} 0 "
-        "0\"/></joint>"
-        "<contact first=\"{0}\" second=\"{0}_roller\" stiffness=\"1e6\"/>",
-        name, elements, side, section, 0.6 * side, 1e-6 - 0.05 - std::sqrt(4 * 50 / 1e7), 0.5 * kPi);
+                 "<link name='{}'><beam elements='{}' order='2'><centerline><line to='{} 0 0'/></centerline>"
+                 "<orientation y='0 1 0'/><section ea='1e7' ga2='1e7' ga3='1e7' gj='100' ei2='50' ei3='50' mass='0.8' "
+                 "j1='1e-4' j2='5e-5' j3='5e-5'/></beam></link>",
+                 name, elements, side) +
+             joint("of_" + name, "fixed", "carriage", name) +
+             fixed(name + "_roller", "<cylinder radius='0.05' length='0.2'/>",
+                   fmt::format("<origin xyz='{} 0 {:.17g}' rpy='{:.17g} 0 0'/>", 0.6 * side,
+                               1e-6 - 0.05 - std::sqrt(4 * 50 / 1e7), 0.5 * kPi)) +
+             contact_of(name, name + "_roller", "stiffness='1e6'");
   }
-  return touching::simulation_of(parts, "", 1e-3, {0, 0, -touching::kG});
+  return simulation_of(parts, "", 1e-3, {0, 0, -kG});
 }
 
 // The supports carry a half each. With w = 8 g / 10 N/m, a = 0.4 m beyond them and L = 1.2 m between them, the middle
@@ -44,7 +34,7 @@ Simulation beam_on_two_rollers(int elements) {
 // (w L^3 / (24 EI) - w a^2 L / (4 EI)). The slope at the supports, 4e-3, moves the places of contact by 2e-4 m, which
 // changes the sag by 4e-3; shear by 1e-4.
 TEST(BeamOnRollers, RestsOnBoth) {
-  const double w = 0.8 * touching::kG, a = 0.4, length = 1.2, bending = 50;
+  const double w = 0.8 * kG, a = 0.4, length = 1.2, bending = 50;
   const double sag = 5 * w * std::pow(length, 4) / (384 * bending) - w * a * a * length * length / (16 * bending);
   const double end = w * std::pow(a, 4) / (8 * bending) -
                      a * (w * std::pow(length, 3) / (24 * bending) - w * a * a * length / (4 * bending));
@@ -64,8 +54,7 @@ TEST(BeamOnRollers, RestsOnBoth) {
     simulation.contacts(contacts);
     for (const ActingContact& contact : contacts) carried[contact.first] += contact.force.z();
     EXPECT_EQ(carried.size(), 2U);
-    for (const auto& [link, force] : carried)
-      EXPECT_NEAR(force, w + 0.5e-4 * touching::kG, 1e-5 * w) << link << elements;
+    for (const auto& [link, force] : carried) EXPECT_NEAR(force, w + 0.5e-4 * kG, 1e-5 * w) << link << elements;
   }
 }
 
@@ -104,17 +93,14 @@ TEST(BeamOnRollers, VibratesBetweenThem) {
 // by F c^2 / (2 EI) times 25 mm, or 0.2 mm. The end's edge gives way by F / k at most, 1e-5 m, and the tube's stations
 // take up some of it. Shear and the slope have the relative effect 1e-3.
 TEST(LineContact, LongBoxLiesOnItsEnd) {
-  const double force = 0.1 * touching::kG, c = 0.2, radius = 0.002, young = 2e11;
-  Simulation simulation = touching::simulation_of(
-      fmt::format("<link name=\"beam\"><beam elements=\"80\" order=\"2\"><centerline><line to=\"2 0 0\"/></centerline>"
-                  "<circle radius=\"{}\"/><material young=\"{}\" poisson=\"0.3\" density=\"1e-3\"/></beam></link>"
-                  "<joint name=\"of_beam\" type=\"fixed\"><parent link=\"world\"/><child link=\"beam\"/></joint>",
-                  radius, young) +
-          touching::box("box", 0.1, {1.6, 0.04, 0.02}) +
-          "<joint name=\"up\" type=\"prismatic\"><parent link=\"world\"/><child link=\"box\"/><origin xyz=\"1 0 0\"/>"
-          "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"0\" velocity=\"0\"/></joint>"
-          "<contact first=\"box\" second=\"beam\" stiffness=\"1e5\"/>",
-      fmt::format("<initial joint=\"up\" position=\"{}\"/>", 0.01 + radius - 1e-6), 1e-3);
+  const double force = 0.1 * kG, c = 0.2, radius = 0.002, young = 2e11;
+  Simulation simulation = simulation_of(
+      round_beam("beam", "<line to='2 0 0'/>", radius,
+                 fmt::format("<material young='{}' poisson='0.3' density='1e-3'/>", young), 80) +
+          joint("of_beam", "fixed", "world", "beam") + box("box", 0.1, {1.6, 0.04, 0.02}) +
+          joint("up", "prismatic", "world", "box", "<origin xyz='1 0 0'/><axis xyz='0 0 1'/>" + kFarLimits) +
+          contact_of("box", "beam", "stiffness='1e5'"),
+      fmt::format("<initial joint='up' position='{}'/>", 0.01 + radius - 1e-6), 1e-3);
   ASSERT_TRUE(simulation.solve_static(10).converged);
   const double deflection = force * c * c * c / (3 * young * 0.25 * kPi * std::pow(radius, 4));
   const double sunk = 0.01 + radius - simulation.position(0);
@@ -123,4 +109,4 @@ TEST(LineContact, LongBoxLiesOnItsEnd) {
 }
 
 }  // namespace
-}  // namespace flexarm::test::rollers
+}  // namespace flexarm::test::touching

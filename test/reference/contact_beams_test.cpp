@@ -1,25 +1,17 @@
 // Tests beams in contact against closed forms and an elastica.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "math/pi.h"
 #include "reference/contact_scenes.h"
-#include "reference/observed_order.h"
 
 namespace flexarm::test::touching {
 namespace {
 
-std::string rod(const std::string& name, const std::string& line, const std::string& material, double radius,
-                int elements) {
-  return fmt::format(
-      "<link name=\"{}\"><beam elements=\"{}\" order=\"2\"><centerline>{}</centerline><orientation y=\"0 1 0\"/>"
-      "<circle radius=\"{}\"/>{}</beam></link>",
-      name, elements, line, radius, material);
+/// A round bar that bends in planes along and across the world's y axis.
+std::string rod(const std::string& line, double radius, const std::string& material, int elements) {
+  return round_beam("rod", line, radius, "<orientation y='0 1 0'/>" + material, elements);
 }
 
 // ---------------------------------------------------------------- a cable over a cylinder
@@ -31,28 +23,25 @@ struct Capstan {
   static double ratio(int elements, double friction) {
     const double young = 1e4 / (kPi * kCable * kCable), turn = 2 * kLine;
     const std::string material = fmt::format(
-        "<material young=\"{:.17g}\" poisson=\"0.3\" density=\"3e4\"/><damping stiffness_proportional=\"5e-4\"/>",
-        young);
+        "<material young='{:.17g}' poisson='0.3' density='3e4'/><damping stiffness_proportional='5e-4'/>", young);
     const std::string line = fmt::format(
-        "<line to=\"0 0 {0}\"/><arc to=\"-{1} 0 {2}\" center=\"-{1} 0 {0}\"/><arc to=\"-{3} 0 {0}\" center=\"-{1} 0 "
-        "{0}\"/><line to=\"-{3} 0 0\"/>",
+        "<line to='0 0 {0}'/><arc to='-{1} 0 {2}' center='-{1} 0 {0}'/><arc to='-{3} 0 {0}' center='-{1} 0 {0}'/>"
+        "<line to='-{3} 0 0'/>",
         kEnds, kLine, kEnds + kLine, turn);
-    const std::string parts = fmt::format(
-        "<joint name=\"pull\" type=\"prismatic\"><parent link=\"world\"/><child link=\"hook\"/><origin xyz=\"{} 0 "
-        "-{}\"/><axis xyz=\"0 0 -1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1e6\" velocity=\"9\"/></joint>"
-        "<link name=\"hook\">{}</link><joint name=\"clamp\" type=\"fixed\"><parent link=\"hook\"/>"
-        "<child link=\"cable\"/></joint>{}<link name=\"post\"><collision><geometry><cylinder radius=\"{}\" "
-        "length=\"0.1\"/></geometry></collision></link><joint name=\"of_post\" type=\"fixed\"><parent link=\"world\"/>"
-        "<child link=\"post\"/><origin rpy=\"{:.17g} 0 0\"/></joint>"
-        "<contact first=\"cable\" second=\"post\" friction=\"{}\" stiffness=\"1e7\"/>",
-        kLine, kEnds, inertial(0.01, Vector3::Constant(1e-6)), rod("cable", line, material, kCable, elements), kRadius,
-        kPi / 2, friction);
+    const std::string parts =
+        joint("pull", "prismatic", "world", "hook",
+              fmt::format("<origin xyz='{} 0 -{}'/><axis xyz='0 0 -1'/>", kLine, kEnds) + kFarLimits) +
+        body("hook", 0.01, Vector3::Constant(1e-6)) + joint("clamp", "fixed", "hook", "rod") +
+        rod(line, kCable, material, elements) +
+        fixed("post", fmt::format("<cylinder radius='{}' length='0.1'/>", kRadius),
+              fmt::format("<origin rpy='{:.17g} 0 0'/>", kPi / 2)) +
+        contact_of("rod", "post", fmt::format("friction='{}' stiffness='1e7'", friction));
     const std::string motion = fmt::format(
-        "<motion joint=\"pull\" position=\"0:0:0 0.1:0:0 0.2:5e-4:0.01 1:8.5e-3:0.01\"/>"
-        "<load link=\"cable\" at=\"-{} 0 0\" force=\"0 0 -10\" history=\"0:0 0.05:1\"/>",
+        "<motion joint='pull' position='0:0:0 0.1:0:0 0.2:5e-4:0.01 1:8.5e-3:0.01'/>"
+        "<load link='rod' at='-{} 0 0' force='0 0 -10' history='0:0 0.05:1'/>",
         turn);
     Simulation simulation = simulation_of(parts, motion, 1e-3, Vector3::Zero());
-    run(simulation, 0.4);
+    run_until(simulation, 0.4);
     double pulled = 0, held = 0;
     const std::size_t cable = 2;
     for (int i = 0; i < 100; ++i) {
@@ -93,14 +82,12 @@ struct Laid {
     double shear, moment, touch;  // shear and moment at the clamp; arc length at which it first touches
   };
   Result solve(int elements) const {
-    const std::string line = fmt::format("<line to=\"{} 0 0\"/>", length);
-    Simulation simulation = simulation_of(
-        rod("arm", line, "<material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/>", kRadius, elements) +
-            "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>" +
-            fmt::format("<ground name=\"low\" offset=\"{:.17g}\"/><contact first=\"arm\" second=\"low\" "
-                        "stiffness=\"{}\"/>",
-                        -height - kRadius, stiffness),
-        "", 1e-3);
+    Simulation simulation = simulation_of(rod(fmt::format("<line to='{} 0 0'/>", length), kRadius,
+                                              "<material young='7e9' poisson='0.3' density='2700'/>", elements) +
+                                              joint("clamp", "fixed", "world", "rod") +
+                                              fmt::format("<ground name='low' offset='{:.17g}'/>", -height - kRadius) +
+                                              contact_of("rod", "low", fmt::format("stiffness='{}'", stiffness)),
+                                          "", 1e-3);
     EXPECT_TRUE(simulation.solve_static(4).converged);
     std::vector<BeamPoint> points;
     simulation.beam_points(1, 3, points);  // the stations
@@ -163,10 +150,9 @@ TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
   };
   for (const Hit& hit : {Hit{20, 5e9, 0.5 / 60, 0.02}, Hit{40, 1e10, 0.5 / 80, 0.01}}) {
     Simulation simulation = simulation_of(
-        rod("rod", "<line to=\"0 0 1\"/>", "<material young=\"1e9\" poisson=\"0\" density=\"1000\"/>", kRadius,
-            hit.elements) +
+        rod("<line to='0 0 1'/>", kRadius, "<material young='1e9' poisson='0' density='1000'/>", hit.elements) +
             floating("rod") + kFloor +
-            fmt::format("<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", hit.stiffness),
+            contact_of("rod", "floor", fmt::format("restitution='1' stiffness='{}'", hit.stiffness)),
         start("rod", {0, 0, kRadius + 1e-9}, {0, 0, -kSpeed}), kWave / 320, Vector3::Zero());
     const double rise = impedance / (hit.stiffness * hit.end_share), energy = simulation.energies().total();
     const double whole = 2 * simulation.mass() * kSpeed;
@@ -198,13 +184,11 @@ TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
 
 // Every iteration has new factors, so that the residual is solved to round-off.
 TEST(ContactOfBeams, AHundredHitsOfABeamKeepItsEnergy) {
-  SimulationOptions options;
-  options.reuse_factorisation = false;
-  Simulation simulation = simulation_of(
-      rod("rod", "<line to=\"1 0 0\"/>", "<material young=\"5e9\" poisson=\"0.3\" density=\"2000\"/>", 0.01, 6) +
-          floating("rod") + kFloor + "<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"1e6\"/>",
-      start("rod", {0, 0, 0.03}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.01\"/>", 2e-4, {0, 0, -kG},
-      options);
+  Simulation simulation =
+      simulation_of(rod("<line to='1 0 0'/>", 0.01, "<material young='5e9' poisson='0.3' density='2000'/>", 6) +
+                        floating("rod") + kFloor + contact_of("rod", "floor", "restitution='1' stiffness='1e6'"),
+                    start("rod", {0, 0, 0.03}, {0, 0, 0}) + "<initial joint='of_rod/ry' position='0.01'/>", 2e-4,
+                    {0, 0, -kG}, full_newton());
   const double begin = simulation.energies().total();
   ASSERT_LT(simulation.energies().strain, 1e-20) << "it starts outside";
   int hits = 0;

@@ -1,15 +1,10 @@
 // Tests rigid bodies in contact against closed forms and solvers of ordinary differential equations.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "math/pi.h"
 #include "reference/contact_scenes.h"
-#include "reference/observed_order.h"
 #include "reference/ode.h"
 
 namespace flexarm::test::touching {
@@ -31,15 +26,11 @@ double error_of_pressed_arm(double step) {
   constexpr double kMass = 1, kBall = 0.05, kArm = 0.5, kHeight = 0.06, kStiffness = 6e3, kInside = 1e-3, kUntil = 1;
   const double start = std::asin((kHeight - kBall + kInside) / kArm), inertia = 0.4 * kMass * kBall * kBall;
   Simulation simulation = simulation_of(
-      fmt::format("<joint name=\"hinge\" type=\"continuous\"><parent link=\"world\"/><child link=\"arm\"/><origin "
-                  "xyz=\"0 0 {0}\"/><axis xyz=\"0 1 0\"/></joint><link name=\"arm\"><inertial><origin xyz=\"{1} 0 0\"/>"
-                  "<mass value=\"{2}\"/><inertia ixx=\"{3}\" iyy=\"{3}\" izz=\"{3}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
-                  "</inertial><collision><origin xyz=\"{1} 0 0\"/><geometry><sphere radius=\"{4}\"/></geometry>"
-                  "</collision></link>",
-                  kHeight, kArm, kMass, inertia, kBall) +
-          kFloor +
-          fmt::format("<contact first=\"arm\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness),
-      fmt::format("<initial joint=\"hinge\" position=\"{:.17g}\"/>", start), step);
+      joint("hinge", "continuous", "world", "arm", fmt::format("<origin xyz='0 0 {}'/><axis xyz='0 1 0'/>", kHeight)) +
+          body("arm", kMass, Vector3::Constant(inertia), {kArm, 0, 0},
+               collision(fmt::format("<sphere radius='{}'/>", kBall), {kArm, 0, 0})) +
+          kFloor + contact_of("arm", "floor", fmt::format("restitution='1' stiffness='{}'", kStiffness)),
+      fmt::format("<initial joint='hinge' position='{:.17g}'/>", start), step);
   const double depth = 0.1 * kBall;  // the initial penetration is less than a quarter of this
   const OdeFunction swing = [&](double, const Eigen::VectorXd& y) {
     const double lever = kArm * std::cos(y[0]), inside = kBall - kHeight + kArm * std::sin(y[0]);
@@ -49,7 +40,7 @@ double error_of_pressed_arm(double step) {
   Eigen::VectorXd expected = Eigen::Vector2d(start, 0);
   double error = 0;
   for (int i = 1; i <= 50; ++i) {
-    run(simulation, kUntil * i / 50);
+    run_until(simulation, kUntil * i / 50);
     expected = solve_ode(swing, kUntil * (i - 1) / 50, kUntil * i / 50, expected);
     EXPECT_GT(kBall - kHeight + kArm * std::sin(expected[0]), 0) << "it stays in contact";
     error = std::max(error, std::abs(simulation.position(0) - expected[0]));
@@ -70,11 +61,11 @@ TEST(ContactOfBodies, BallComesToRestInAWedge) {
   std::string parts = ball("ball", kMass, kRadius) + floating("ball");
   for (const double side : {-1.0, 1.0})
     parts += fmt::format(
-        "<ground name=\"wall{0}\" normal=\"{1:.17g} 0 {2:.17g}\"/><contact first=\"ball\" second=\"wall{0}\" "
-        "stiffness=\"{3}\"/>",
+        "<ground name='wall{0}' normal='{1:.17g} 0 {2:.17g}'/><contact first='ball' second='wall{0}' "
+        "stiffness='{3}'/>",
         side < 0 ? "l" : "r", side * sine, cosine, kStiffness);
   Simulation simulation = simulation_of(parts, start("ball", {0.003, 0.01, kRadius / cosine + 0.02}, {0, 0, 0}), 1e-3);
-  run(simulation, 6);
+  run_until(simulation, 6);
   double inside = each / kStiffness;
   for (int i = 0; i < 20; ++i) inside *= each / push(kStiffness, 0.1 * kRadius, inside);
   const Vector3 place = simulation.link_pose(1).position;
@@ -86,10 +77,9 @@ TEST(ContactOfBodies, BallComesToRestInAWedge) {
 // No contact force can prevent a prescribed motion that leaves no room, so the step fails.
 TEST(ContactOfBodies, WhatIsDrivenThroughAnotherIsTold) {
   Simulation simulation = simulation_of(
-      "<joint name=\"lower\" type=\"prismatic\"><parent link=\"world\"/><child link=\"block\"/><origin xyz=\"0 0 "
-      "0.07\"/><axis xyz=\"0 0 -1\"/><limit lower=\"-1\" upper=\"1\" effort=\"100\" velocity=\"1\"/></joint>" +
-          box("block", 1, Vector3::Constant(0.1)) + kFloor + "<contact first=\"block\" second=\"floor\"/>",
-      "<motion joint=\"lower\" position=\"0:0:0 1:0.1:0\"/>", 1e-3);
+      joint("lower", "prismatic", "world", "block", "<origin xyz='0 0 0.07'/><axis xyz='0 0 -1'/>" + kFarLimits) +
+          box("block", 1, Vector3::Constant(0.1)) + kFloor + contact_of("block", "floor"),
+      "<motion joint='lower' position='0:0:0 1:0.1:0'/>", 1e-3);
   StepResult result;
   do {
     result = simulation.step();
@@ -134,20 +124,16 @@ struct Cradle {
   }
 
   static Eigen::VectorXd velocities(double step) {
-    std::string parts =
-        fmt::format("<contact first=\"*\" second=\"*\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness);
+    std::string parts = contact_of("*", "*", fmt::format("restitution='1' stiffness='{}'", kStiffness));
     for (int i = 0; i < kBalls; ++i)
-      parts += fmt::format(
-          "<joint name=\"hinge{0}\" type=\"continuous\"><parent link=\"world\"/><child link=\"ball{0}\"/><origin "
-          "xyz=\"{1:.17g} 0 0\"/><axis xyz=\"0 1 0\"/></joint><link name=\"ball{0}\"><inertial><origin xyz=\"0 0 "
-          "{2}\"/><mass value=\"{3}\"/><inertia ixx=\"{4:.17g}\" iyy=\"{4:.17g}\" izz=\"{4:.17g}\" ixy=\"0\" "
-          "ixz=\"0\" iyz=\"0\"/></inertial><collision><origin xyz=\"0 0 {2}\"/><geometry><sphere radius=\"{5}\"/>"
-          "</geometry></collision></link>",
-          i, kApart * i, -kRod, kMass, kInertia, kRadius);
+      parts += joint(fmt::format("hinge{}", i), "continuous", "world", fmt::format("ball{}", i),
+                     fmt::format("<origin xyz='{:.17g} 0 0'/><axis xyz='0 1 0'/>", kApart * i)) +
+               body(fmt::format("ball{}", i), kMass, Vector3::Constant(kInertia), {0, 0, -kRod},
+                    collision(fmt::format("<sphere radius='{}'/>", kRadius), {0, 0, -kRod}));
     Simulation simulation = simulation_of(
-        parts, fmt::format("<initial joint=\"hinge0\" position=\"{}\" velocity=\"{:.17g}\"/>", kStart, kRate), step);
+        parts, fmt::format("<initial joint='hinge0' position='{}' velocity='{:.17g}'/>", kStart, kRate), step);
     const double begin = simulation.energies().total();
-    run(simulation, kUntil);
+    run_until(simulation, kUntil);
     // Tolerance: round-off over sub-steps of 1e-5 s; the kinetic energy is 0.1 J.
     EXPECT_NEAR(simulation.energies().total(), begin, 1e-10);
     Eigen::VectorXd out(kBalls);
@@ -178,22 +164,20 @@ TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
   // It starts at the penetration at which its rim carries it.
   double inside = kMass * kG / kPoints / kStiffness;
   for (int i = 0; i < 20; ++i) inside *= kMass * kG / kPoints / push(kStiffness, 0.05 * kHigh, inside);
-  Simulation simulation = simulation_of(
-      fmt::format("<link name=\"disc\">{}<collision><geometry><cylinder radius=\"{}\" length=\"{}\"/></geometry>"
-                  "</collision></link>",
-                  inertial(kMass, {across, across, polar}), kRadius, kHigh) +
-          floating("disc") + kFloor +
-          fmt::format("<contact first=\"disc\" second=\"floor\" friction=\"{}\" stiffness=\"{}\"/>", kFriction,
-                      kStiffness),
-      start("disc", {0, 0, kHigh / 2 - inside}, {0, 0, 0}, {0, 0, kRate}), kStep);
+  Simulation simulation =
+      simulation_of(body("disc", kMass, {across, across, polar}, Vector3::Zero(),
+                         collision(fmt::format("<cylinder radius='{}' length='{}'/>", kRadius, kHigh))) +
+                        floating("disc") + kFloor +
+                        contact_of("disc", "floor", fmt::format("friction='{}' stiffness='{}'", kFriction, kStiffness)),
+                    start("disc", {0, 0, kHigh / 2 - inside}, {0, 0, 0}, {0, 0, kRate}), kStep);
   const double braking = 2 * kFriction * kG / kRadius, stop = kRate / braking;
   const auto rate = [&] { return simulation.angular_momentum().z() / polar; };
-  run(simulation, 0.02);  // until all points of the rim slip
+  run_until(simulation, 0.02);  // until all points of the rim slip
   const double first = rate(), begin = simulation.time();
-  run(simulation, 0.9 * stop);
+  run_until(simulation, 0.9 * stop);
   const double seen = (first - rate()) / (simulation.time() - begin);
   EXPECT_NEAR(seen, braking, 2 * kRate * kRate * kStep * kStep / 8 * braking);
-  run(simulation, 4 * stop);
+  run_until(simulation, 4 * stop);
   EXPECT_NEAR(rate(), 0, 1e-9);
   EXPECT_LE(simulation.link_pose(1).position.head<2>().norm(), 1e-12) << "it has spun on the spot";
 }
@@ -207,21 +191,18 @@ Drawn draw_block(double force, double friction, double pressed) {
   std::string parts = box("block", 0.5, {0.4, 0.08, 0.1}) + floating("block"), simulation_entries;
   for (const double side : {-1.0, 1.0}) {
     const std::string name = side < 0 ? "low" : "high";
-    parts += fmt::format(
-                 "<joint name=\"press_{0}\" type=\"prismatic\"><parent link=\"world\"/><child link=\"{0}\"/><origin "
-                 "xyz=\"0 {1} 0\"/><axis xyz=\"0 {2} 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1000\" "
-                 "velocity=\"9\"/></joint>",
-                 name, 0.05 * side, -side) +
+    parts += joint("press_" + name, "prismatic", "world", name,
+                   fmt::format("<origin xyz='0 {} 0'/><axis xyz='0 {} 0'/>", 0.05 * side, -side) + kFarLimits) +
              box(name, 0.1, {0.06, 0.02, 0.06});
-    simulation_entries += fmt::format("<effort joint=\"press_{}\" history=\"0:0 0.05:{}\"/>", name, pressed);
+    simulation_entries += fmt::format("<effort joint='press_{}' history='0:0 0.05:{}'/>", name, pressed);
   }
-  parts += fmt::format("<contact first=\"block\" second=\"*\" friction=\"{}\" stiffness=\"1e6\"/>", friction);
+  parts += contact_of("block", "*", fmt::format("friction='{}' stiffness='1e6'", friction));
   simulation_entries +=
-      fmt::format("<load link=\"block\" at=\"0 0 0\" force=\"{:.17g} 0 0\" history=\"0:0 0.2:0 0.4:1\"/>", force);
+      fmt::format("<load link='block' at='0 0 0' force='{:.17g} 0 0' history='0:0 0.2:0 0.4:1'/>", force);
   Simulation simulation = simulation_of(parts, simulation_entries, 1e-3, Vector3::Zero());
-  run(simulation, 0.5);
+  run_until(simulation, 0.5);
   const double begin = simulation.momentum().x() / 0.5;
-  run(simulation, 0.7);
+  run_until(simulation, 0.7);
   return {simulation.link_pose(1).position.x(), (simulation.momentum().x() / 0.5 - begin) / 0.2};
 }
 
@@ -239,15 +220,12 @@ TEST(ContactOfBodies, WhatIsGraspedSlipsAtTwiceTheFrictionOfAFinger) {
 // as on a plane, x = v t - mu g t^2/2, until its middle has left the table.
 TEST(ContactOfBodies, CubeSlidesOffATable) {
   constexpr double kFriction = 0.2, kSpeed = 2, kStiffness = 1e6;
-  Simulation simulation = simulation_of(
-      box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
-          "<link name=\"table\"><collision><geometry><box size=\"0.5 0.5 0.1\"/></geometry></collision></link>"
-          "<joint name=\"stands\" type=\"fixed\"><parent link=\"world\"/><child link=\"table\"/>"
-          "<origin xyz=\"0 0 -0.05\"/></joint>" +
-          fmt::format("<contact first=\"cube\" second=\"table\" friction=\"{}\" stiffness=\"{}\"/>", kFriction,
-                      kStiffness),
-      start("cube", {0, 0, 0.05}, {kSpeed, 0, 0}), 1e-3);
-  const double begin = account(simulation);
+  Simulation simulation =
+      simulation_of(box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
+                        fixed("table", "<box size='0.5 0.5 0.1'/>", "<origin xyz='0 0 -0.05'/>") +
+                        contact_of("cube", "table", fmt::format("friction='{}' stiffness='{}'", kFriction, kStiffness)),
+                    start("cube", {0, 0, 0.05}, {kSpeed, 0, 0}), 1e-3);
+  const double begin = energy_account(simulation);
   while (simulation.link_pose(1).position.x() < 0.24) {
     ASSERT_TRUE(simulation.step().converged);
     const double t = simulation.time();
@@ -258,7 +236,7 @@ TEST(ContactOfBodies, CubeSlidesOffATable) {
   }
   while (simulation.link_pose(1).position.z() > -0.1) ASSERT_TRUE(simulation.step().converged);
   EXPECT_GT(simulation.link_pose(1).position.x(), 0.25);
-  EXPECT_NEAR(account(simulation), begin, 1e-9);
+  EXPECT_NEAR(energy_account(simulation), begin, 1e-9);
 }
 
 // The same over the gap between two tables of equal height. The penetration on the second table continues that on the
@@ -266,15 +244,12 @@ TEST(ContactOfBodies, CubeSlidesOffATable) {
 TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
   constexpr double kFriction = 0.1, kSpeed = 2;
   std::string parts = box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
-                      fmt::format("<contact first=\"*\" second=\"*\" friction=\"{}\"/>", kFriction);
+                      contact_of("*", "*", fmt::format("friction='{}'", kFriction));
   for (const double x : {0.0, 0.5})
-    parts += fmt::format(
-        "<link name=\"table{0}\"><collision><geometry><box size=\"0.5 0.5 0.1\"/></geometry></collision></link>"
-        "<joint name=\"stands{0}\" type=\"fixed\"><parent link=\"world\"/><child link=\"table{0}\"/>"
-        "<origin xyz=\"{0} 0 -0.05\"/></joint>",
-        x);
+    parts +=
+        fixed(fmt::format("table{}", x), "<box size='0.5 0.5 0.1'/>", fmt::format("<origin xyz='{} 0 -0.05'/>", x));
   Simulation simulation = simulation_of(parts, start("cube", {0, 0, 0.05}, {kSpeed, 0, 0}), 1e-3);
-  const double begin = account(simulation);
+  const double begin = energy_account(simulation);
   while (simulation.link_pose(1).position.x() < 0.6) {
     ASSERT_TRUE(simulation.step().converged);
     const double t = simulation.time(), middle = kSpeed * t - 0.5 * kFriction * kG * t * t;
@@ -282,7 +257,7 @@ TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
     ASSERT_NEAR(simulation.link_pose(1).position.x(), middle, 1e-3) << t;
     ASSERT_NEAR(simulation.link_pose(1).position.z(), 0.05, 1e-3) << t;
   }
-  EXPECT_NEAR(account(simulation), begin, 1e-9);
+  EXPECT_NEAR(energy_account(simulation), begin, 1e-9);
 }
 
 // Two equal cubes on a frictionless floor hit each other. Their bottoms and sides are flush, and they must not pass
@@ -290,9 +265,9 @@ TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
 TEST(ContactOfBodies, CubesOnAFloorKnockAgainstEachOther) {
   Simulation simulation =
       simulation_of(box("one", 1, Vector3::Constant(0.1)) + floating("one") + box("other", 1, Vector3::Constant(0.1)) +
-                        floating("other") + kFloor + "<contact first=\"*\" second=\"*\" restitution=\"0.5\"/>",
+                        floating("other") + kFloor + contact_of("*", "*", "restitution='0.5'"),
                     start("one", {0, 0, 0.05}, {1, 0, 0}) + start("other", {0.12, 0, 0.05}, {0, 0, 0}), 1e-3);
-  run(simulation, 0.2);
+  run_until(simulation, 0.2);
   const double gap = simulation.link_pose(2).position.x() - simulation.link_pose(1).position.x();
   EXPECT_GT(gap, 0.1);
   EXPECT_NEAR(simulation.momentum().x(), 1, 1e-9);
@@ -331,24 +306,23 @@ struct Painleve {
   }
 
   Vector3 seen(double step) const {
-    std::string parts = "<link name=\"rod\">" + inertial(kMass, {1e-4, kInertia, kInertia});
+    std::string balls;
     for (const double end : {-kHalf, kHalf})
-      parts += fmt::format(
-          "<collision><origin xyz=\"{} 0 0\"/><geometry><sphere radius=\"{}\"/></geometry></collision>", end, kRadius);
-    parts += "</link>" + floating("rod") + kFloor +
-             fmt::format("<contact first=\"rod\" second=\"floor\" friction=\"{}\" restitution=\"1\" stiffness=\"{}\"/>",
-                         friction, kStiffness);
+      balls += collision(fmt::format("<sphere radius='{}'/>", kRadius), {end, 0, 0});
+    const std::string parts =
+        body("rod", kMass, {1e-4, kInertia, kInertia}, Vector3::Zero(), balls) + floating("rod") + kFloor +
+        contact_of("rod", "floor", fmt::format("friction='{}' restitution='1' stiffness='{}'", friction, kStiffness));
     Simulation simulation =
         simulation_of(parts,
                       start("rod", {0, 0, kRadius + kGap + kHalf * std::sin(angle)}, {speed, 0, 0}) +
-                          fmt::format("<initial joint=\"of_rod/ry\" position=\"{:.17g}\"/>", -angle),
+                          fmt::format("<initial joint='of_rod/ry' position='{:.17g}'/>", -angle),
                       step);
-    const double begin = account(simulation), energy = simulation.energies().total();
+    const double begin = energy_account(simulation), energy = simulation.energies().total();
     while (simulation.time() < kUntil - 0.5 * step) {
       EXPECT_TRUE(simulation.step().converged);
       EXPECT_LT(simulation.energies().total(), energy * (1 + 1e-9)) << "energy from nowhere";
     }
-    EXPECT_NEAR(account(simulation), begin, 1e-8 * begin);
+    EXPECT_NEAR(energy_account(simulation), begin, 1e-8 * begin);
     const Vector3 middle = simulation.link_pose(1).position, momentum = simulation.momentum();
     const double spin = (simulation.angular_momentum() - middle.cross(momentum)).y();
     return {momentum.x() / kMass, momentum.z() / kMass, -spin / kInertia};

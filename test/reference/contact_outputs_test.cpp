@@ -1,67 +1,29 @@
 // Tests the outputs of contacts against statics and closed forms: columns, sensors, contact points.
 #include <map>
 
-#include <gtest/gtest.h>
+#include "flexarm/model/model_error.h"
+#include "reference/contact_scenes.h"
+#include "support/refusal.h"
 
-#include <fmt/format.h>
-
-#include "flexarm/scene/scene_description.h"
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/result_columns.h"
-#include "flexarm/simulation/simulation.h"
-#include "support/source_path.h"
-
-namespace flexarm::test::contact_outputs {
+namespace flexarm::test::touching {
 namespace {
 
-constexpr double kG = 9.81, kMass = 3;
+constexpr double kMass = 3;
 /// At rest, forces are those of statics. The contact's overdamped mode decays by exp(-50 t/s) in steps of 1 ms
 /// (docs/notes/contact.md 2). So after 1 s only Newton's tolerance is left: 1e-12 of the scene's length, about 1 m,
 /// times at most 10^6 N/m.
 constexpr double kForceError = 1e-6;
 
-std::string box(const std::string& name, double mass, const Vector3& size) {
-  const Vector3 squares = size.cwiseAbs2(), inertia = mass / 12 * (Vector3::Constant(squares.sum()) - squares);
-  return fmt::format(
-      "<link name=\"{0}\"><inertial><mass value=\"{1}\"/><inertia ixx=\"{2:.17g}\" iyy=\"{3:.17g}\" izz=\"{4:.17g}\" "
-      "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"{5} {6} "
-      "{7}\"/></geometry></collision>"
-      "</link>",
-      name, mass, inertia.x(), inertia.y(), inertia.z(), size.x(), size.y(), size.z());
-}
-
-std::string joint(const std::string& link, const std::string& type, const Vector3& place = Vector3::Zero(),
-                  const std::string& more = "") {
-  return fmt::format(
-      "<joint name=\"of_{0}\" type=\"{1}\"><parent link=\"world\"/><child link=\"{0}\"/>"
-      "<origin xyz=\"{2} {3} {4}\" {5}/></joint>",
-      link, type, place.x(), place.y(), place.z(), more);
-}
-
-Simulation simulation_of(const std::string& parts, const std::string& starts = "", double step = 1e-3,
-                         double gravity = kG) {
-  scene::ReadResult result = scene::read_scene_text(
-      fmt::format("<robot name=\"outputs\"><link name=\"world\"/>{}<simulation><gravity xyz=\"0 0 {:.17g}\"/>"
-                  "<integrator scheme=\"em\" step=\"{:.17g}\" tolerance=\"1e-12\"/>{}</simulation></robot>",
-                  parts, -gravity, step, starts),
-      "outputs.urdf");
-  for (const scene::Diagnostic& finding : result.diagnostics) ADD_FAILURE() << finding.text();
-  return Simulation(result.scene.value());
-}
-
-void run(Simulation& simulation, double until) {
-  while (simulation.time() < until - 0.5 * simulation.step_size()) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged) << simulation.explain(result);
-  }
+Simulation at_rest(const std::string& parts, const std::string& starts = "", double step = 1e-3, double weight = kG) {
+  return Simulation(scene_of(robot(parts, gravity({0, 0, -weight}) + integrator("em", step, 1e-12) + starts)));
 }
 
 const Vector3 kSize(0.2, 0.15, 0.1);
 
 /// A block on the floor.
-Simulation block(const std::string& more, const std::string& floor = "<ground name=\"floor\"/>") {
-  return simulation_of(box("block", kMass, kSize) + joint("block", "floating") + floor + more,
-                       "<initial joint=\"of_block/z\" position=\"0.05\"/>");
+Simulation block(const std::string& more) {
+  return at_rest(box("block", kMass, kSize) + floating("block") + kFloor + more,
+                 "<initial joint='of_block/z' position='0.05'/>");
 }
 
 /// Force, number of points and gap of the only pair with columns.
@@ -83,8 +45,8 @@ Vector3 force_of(const std::vector<double>& values) {
 }
 
 TEST(ContactOutputs, FloorCarriesTheWeightOfABlock) {
-  Simulation simulation = block("<contact first=\"block\" second=\"floor\" friction=\"0.5\"/>");
-  run(simulation, 1.5);
+  Simulation simulation = block(contact_of("block", "floor", "friction='0.5'"));
+  run_until(simulation, 1.5);
   const std::vector<double> values = columns_of(simulation, "block/floor");
   EXPECT_LE((force_of(values) - Vector3(0, 0, kMass * kG)).norm(), kForceError);
   EXPECT_GE(values[3], 4) << "its corners at least";
@@ -108,15 +70,15 @@ TEST(ContactOutputs, FloorCarriesTheWeightOfABlock) {
 
 // The columns have the names in the order of the file, whichever link has the contact points.
 TEST(ContactOutputs, AreOfTheFirstThatAContactNames) {
-  Simulation simulation = block("<contact first=\"floor\" second=\"block\"/>");
-  run(simulation, 1.5);
+  Simulation simulation = block(contact_of("floor", "block"));
+  run_until(simulation, 1.5);
   EXPECT_LE((force_of(columns_of(simulation, "floor/block")) - Vector3(0, 0, -kMass * kG)).norm(), kForceError);
 }
 
 TEST(ContactOutputs, OfAllOthersHaveNoColumns) {
-  Simulation simulation = block("<contact first=\"block\" second=\"*\"/>");
+  Simulation simulation = block(contact_of("block", "*"));
   EXPECT_THROW(columns_of(simulation, ""), std::invalid_argument);
-  run(simulation, 1.5);
+  run_until(simulation, 1.5);
   std::vector<ActingContact> contacts;
   simulation.contacts(contacts);
   double force = 0;
@@ -131,13 +93,12 @@ TEST(ContactOutputs, FrictionHoldsABlockOnAnIncline) {
   const Vector3 normal(-std::sin(slope), 0, std::cos(slope));
   const Vector3 start = 0.05 * normal;
   Simulation simulation =
-      simulation_of(box("block", kMass, kSize) + joint("block", "floating") +
-                        fmt::format("<ground name=\"floor\" normal=\"{:.17g} 0 {:.17g}\"/>", normal.x(), normal.z()) +
-                        "<contact first=\"block\" second=\"floor\" friction=\"0.6\"/>",
-                    fmt::format("<initial joint=\"of_block/x\" position=\"{:.17g}\"/><initial joint=\"of_block/z\" "
-                                "position=\"{:.17g}\"/><initial joint=\"of_block/ry\" position=\"{:.17g}\"/>",
-                                start.x(), start.z(), -slope));
-  run(simulation, 3);
+      at_rest(box("block", kMass, kSize) + floating("block") + "<ground name='floor' normal='" + xyz(normal) + "'/>" +
+                  contact_of("block", "floor", "friction='0.6'"),
+              fmt::format("<initial joint='of_block/x' position='{:.17g}'/><initial joint='of_block/z' "
+                          "position='{:.17g}'/><initial joint='of_block/ry' position='{:.17g}'/>",
+                          start.x(), start.z(), -slope));
+  run_until(simulation, 3);
   const Vector3 force = force_of(columns_of(simulation, "block/floor"));
   const double push = force.dot(normal);
   EXPECT_NEAR(push, kMass * kG * std::cos(slope), kForceError);
@@ -149,15 +110,11 @@ const double kOmega = std::sqrt(kStiffness / kBallMass);
 
 /// A weightless ball that just touches the floor, in steps of 1/500 of a radian of its contact's oscillation.
 Simulation hit(double restitution) {
-  return simulation_of(
-      fmt::format("<link name=\"ball\"><inertial><mass value=\"{}\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" "
-                  "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry>"
-                  "</collision></link><ground name=\"floor\"/>",
-                  kBallMass) +
-          joint("ball", "floating") +
-          fmt::format("<contact first=\"ball\" second=\"floor\" restitution=\"{}\" stiffness=\"{}\"/>", restitution,
-                      kStiffness),
-      fmt::format("<initial joint=\"of_ball/z\" position=\"0.1\"/><initial link=\"ball\" linear=\"0 0 {}\"/>", -kSpeed),
+  return at_rest(
+      body("ball", kBallMass, Vector3::Constant(0.01), Vector3::Zero(), collision("<sphere radius='0.1'/>")) + kFloor +
+          floating("ball") +
+          contact_of("ball", "floor", fmt::format("restitution='{}' stiffness='{}'", restitution, kStiffness)),
+      fmt::format("<initial joint='of_ball/z' position='0.1'/><initial link='ball' linear='0 0 {}'/>", -kSpeed),
       1 / kOmega / 500, 0);
 }
 
@@ -204,15 +161,15 @@ TEST(ContactOutputs, ForcesOfAHitAreItsChangeOfMomentum) {
 // A fixed pad is rotated by a quarter turn about y, so that its x axis points down. It carries a block beside its
 // middle.
 TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
-  Simulation simulation = simulation_of(
-      box("block", kMass, {0.1, 0.1, 0.1}) + joint("block", "floating") + box("pad", 1, {0.1, 0.4, 0.4}) +
-          joint("pad", "fixed", {0, 0, 0.2}, "rpy=\"0 1.5707963267948966 0\"") +
-          "<contact first=\"block\" second=\"*\" friction=\"0.5\"/>"
-          "<sensor name=\"cell\" kind=\"contact\" link=\"pad\" at=\"0 0.02 0\"/>"
-          "<sensor name=\"felt\" kind=\"contact\" link=\"world\" group=\"block\" bias=\"1 0 0 0 0 0\"/>"
-          "<sensor name=\"none\" kind=\"contact\" link=\"pad\" group=\"block pad\"/>",
-      "<initial joint=\"of_block/x\" position=\"0.05\"/><initial joint=\"of_block/z\" position=\"0.3\"/>");
-  run(simulation, 1.5);
+  Simulation simulation =
+      at_rest(box("block", kMass, {0.1, 0.1, 0.1}) + floating("block") + box("pad", 1, {0.1, 0.4, 0.4}) +
+                  joint("of_pad", "fixed", "world", "pad", "<origin xyz='0 0 0.2' rpy='0 1.5707963267948966 0'/>") +
+                  contact_of("block", "*", "friction='0.5'") +
+                  "<sensor name='cell' kind='contact' link='pad' at='0 0.02 0'/>"
+                  "<sensor name='felt' kind='contact' link='world' group='block' bias='1 0 0 0 0 0'/>"
+                  "<sensor name='none' kind='contact' link='pad' group='block pad'/>",
+              "<initial joint='of_block/x' position='0.05'/><initial joint='of_block/z' position='0.3'/>");
+  run_until(simulation, 1.5);
   const double weight = kMass * kG;
   const auto values = [&](std::size_t i) {
     Vector6 out;
@@ -234,15 +191,14 @@ TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
 // A flexible blade lies on the floor. Contact points are reported along it, and the clamp carries what the floor does
 // not.
 TEST(ContactOutputs, FloorAndClampCarryABeam) {
-  Simulation simulation = simulation_of(
-      "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
-      "<circle radius=\"0.004\"/><material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/></beam></link>"
-      "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>"
-      "<ground name=\"low\" offset=\"-0.05\"/><contact first=\"low\" second=\"arm\" stiffness=\"1e6\"/>"
-      "<sensor name=\"root\" kind=\"reaction\" link=\"arm\"/>"
-      "<sensor name=\"felt\" kind=\"contact\" link=\"arm\" at=\"1 0 0\"/>");
+  Simulation simulation = at_rest(
+      round_beam("arm", "<line to='1 0 0'/>", 0.004, "<material young='7e9' poisson='0.3' density='2700'/>", 10) +
+      joint("clamp", "fixed", "world", "arm") + "<ground name='low' offset='-0.05'/>" +
+      contact_of("low", "arm", "stiffness='1e6'") +
+      "<sensor name='root' kind='reaction' link='arm'/>"
+      "<sensor name='felt' kind='contact' link='arm' at='1 0 0'/>");
   ASSERT_TRUE(simulation.solve_static(1).converged);
-  run(simulation, 0.01);
+  run_until(simulation, 0.01);
   const double weight = 2700 * 3.14159265358979323846 * 0.004 * 0.004 * kG;
   const double floor = -columns_of(simulation, "low/arm")[2], clamp = simulation.sample(0).values[2];
   EXPECT_GT(floor, 0.05 * weight);
@@ -263,9 +219,8 @@ TEST(ContactOutputs, FloorAndClampCarryABeam) {
 // The motor's 40 N move two fingers, the second of which mimics the first. By virtual work each finger presses with 20
 // N. Friction at each carries half of the block's weight. The last motion has ended 2 s before.
 TEST(ContactOutputs, FingersOfAGripperShareEffortAndWeight) {
-  scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
-  Simulation simulation(result.scene.value());
-  run(simulation, 4);
+  Simulation simulation(scene_at("config/examples/gripper.urdf"));
+  run_until(simulation, 4);
   std::map<std::string, Vector3> forces;
   std::vector<ActingContact> contacts;
   simulation.contacts(contacts);
@@ -281,21 +236,14 @@ TEST(ContactOutputs, FingersOfAGripperShareEffortAndWeight) {
 }
 
 TEST(ContactOutputs, SensorsOfWhatNothingTouchesAreRefused) {
-  const std::string contact = "<contact first=\"block\" second=\"floor\"/>";
-  const auto refused = [&](const std::string& more) {
-    try {
-      block(more);
-    } catch (const ModelError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(refused(contact + "<sensor name=\"cell\" kind=\"contact\" link=\"world\"/>"),
-            "outputs.urdf:1: <sensor> 'cell': no <contact> lets anything touch link 'world'");
-  EXPECT_EQ(refused("<sensor name=\"cell\" kind=\"contact\" link=\"world\" group=\"block floor\"/>"),
-            "outputs.urdf:1: <sensor> 'cell': no <contact> lets anything touch its group");
-  EXPECT_EQ(refused(contact + "<sensor name=\"cell\" kind=\"contact\" link=\"world\" group=\"block\"/>"), "");
+  const std::string contact = contact_of("block", "floor");
+  const auto refused = [&](const std::string& more) { return refusal<ModelError>([&] { block(more); }); };
+  EXPECT_EQ(refused(contact + "<sensor name='cell' kind='contact' link='world'/>"),
+            "test.urdf:1: <sensor> 'cell': no <contact> lets anything touch link 'world'");
+  EXPECT_EQ(refused("<sensor name='cell' kind='contact' link='world' group='block floor'/>"),
+            "test.urdf:1: <sensor> 'cell': no <contact> lets anything touch its group");
+  EXPECT_EQ(refused(contact + "<sensor name='cell' kind='contact' link='world' group='block'/>"), "");
 }
 
 }  // namespace
-}  // namespace flexarm::test::contact_outputs
+}  // namespace flexarm::test::touching

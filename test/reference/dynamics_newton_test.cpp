@@ -27,12 +27,6 @@ void expect_quadratic(const std::vector<double>& norms, const std::string& what)
   EXPECT_GT(observed_exponent(norms), 1.7) << what;
 }
 
-SimulationOptions full_newton(const std::string& scheme, double step) {
-  SimulationOptions out = options(scheme, step, 1e-12);
-  out.reuse_factorisation = false;
-  return out;
-}
-
 class Newton : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Newton, QuadraticOnALargeStepOfAFlexibleBeam) {
@@ -41,7 +35,7 @@ TEST_P(Newton, QuadraticOnALargeStepOfAFlexibleBeam) {
   b.joint("clamp", JointKind::Fixed, "world", "arm");
   b.load("arm", {1.5, 0.5, 0.3}, {20, 10, 60}, {5, 10, 5});
   b.load("arm", {1.5, 0.5, 0.3}, {0, 0, 10}, Vector3::Zero(), "1", scene::LoadFrame::Follower);
-  Simulation simulation(b.scene, full_newton(GetParam(), 0.15));
+  Simulation simulation(b.scene, full_newton(options(GetParam(), 0.15, 1e-12)));
   ASSERT_EQ(simulation.step().halvings, 0);
   expect_quadratic(update_norms_of(simulation), GetParam() + " beam");
 }
@@ -61,7 +55,7 @@ TEST_P(Newton, QuadraticWithEveryKindOfJoint) {
     b.scene.initial_links[0].angular *= 3;
     b.load("hand", {0.2, 0.1, 0}, {3, 6, 2}, {0.3, 0.6, 0.3});
     for (scene::JointDescription& joint : b.scene.joints) joint.damping = 0.3;
-    Simulation simulation(b.scene, full_newton(GetParam(), 0.1));
+    Simulation simulation(b.scene, full_newton(options(GetParam(), 0.1, 1e-12)));
     const StepResult result = simulation.step();
     ASSERT_TRUE(result.converged);
     ASSERT_EQ(result.halvings, 0) << name;

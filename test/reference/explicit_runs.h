@@ -22,9 +22,7 @@ class ExplicitRuns : public ::testing::TestWithParam<ExplicitMethod> {
   }
   /// A simulation whose steps depend on the state alone, in steps of 10 ms.
   Simulation without_memory(const SceneBuilder& b) const {
-    SimulationOptions no_reuse = options(GetParam().name, 0.01, 1e-12);
-    no_reuse.reuse_factorisation = false;
-    return Simulation(b.scene, no_reuse);
+    return Simulation(b.scene, full_newton(options(GetParam().name, 0.01, 1e-12)));
   }
 };
 

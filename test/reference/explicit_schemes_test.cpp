@@ -1,36 +1,28 @@
 // Tests explicit schemes: orders against closed forms, the account of energies, and what they refuse.
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-
-#include <gtest/gtest.h>
 
 #include "flexarm/model/model_error.h"
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 #include "support/scene_text.h"
-#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
 
-Simulation simulation_of(const std::string& text, const std::string& scheme, double step) {
-  SimulationOptions options;
-  options.scheme = scheme;
-  options.step = step;
-  return Simulation(scene_of(text), options);
+/// `entries`: children of <simulation>.
+Simulation simulation_of(const std::string& parts, const std::string& entries, const std::string& scheme, double step) {
+  return Simulation(scene_of(robot(parts, entries)), options(scheme, step));
 }
 
-std::string link(const std::string& name, const std::string& centre, const std::string& inertias = "0.02 0.03 0.04") {
-  std::istringstream numbers(inertias);
-  double x, y, z;
-  numbers >> x >> y >> z;
-  return "<link name=\"" + name + "\"><inertial><origin xyz=\"" + centre + "\"/><mass value=\"2\"/><inertia ixx=\"" +
-         std::to_string(x) + "\" iyy=\"" + std::to_string(y) + "\" izz=\"" + std::to_string(z) +
-         "\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
+/// A link of 2 kg.
+std::string link(const std::string& name, const Vector3& centre = Vector3::Zero(),
+                 const Vector3& moments = {0.02, 0.03, 0.04}) {
+  return body(name, 2, moments, centre);
 }
+const std::string kAboutY = "<axis xyz='0 1 0'/>", kDown = gravity({0, 0, -9.81});
+const std::string kPendulum = link("bob", {0.5, 0, 0}) + joint("hinge", "continuous", "world", "bob", kAboutY);
+const std::string kTwoLinks = link("upper", {0.3, 0, 0}) + link("fore", {0.2, 0.1, 0});
 
 struct Method {
   const char* name;
@@ -40,6 +32,25 @@ struct Method {
 
 class ExplicitSchemes : public ::testing::TestWithParam<Method> {
  protected:
+  static Simulation simulated(const std::string& parts, const std::string& entries, double step) {
+    return simulation_of(parts, entries, GetParam().name, step);
+  }
+  /// The simulation after `count` steps to the time `end`.
+  static Simulation after(const std::string& parts, const std::string& entries, double end, int count) {
+    Simulation s = simulated(parts, entries, end / count);
+    run(s, count);
+    return s;
+  }
+  /// The error of angle and rate of a joint after `half` of a period [s], when it has swung from 0 by `angle`, and is
+  /// at rest. `rate`: a scale of rates.
+  static double error_after_swing(const std::string& parts, const std::string& entries, const char* joint, double half,
+                                  int count, double angle, double rate) {
+    const double start = energy_account(simulated(parts, entries, half / count));
+    const Simulation s = after(parts, entries, half, count);
+    EXPECT_NEAR(energy_account(s), start, 1e-3 * (1 + std::abs(s.energies().work))) << "a rough check of the account";
+    const std::size_t swung = *s.find_coordinate(joint);
+    return std::hypot(s.position(swung) - angle, s.velocity(swung) / rate);
+  }
   /// Expects the error to fall with the order of the method when steps are halved. `error`: after a number of steps.
   /// `steps`: as many steps of Method::coarse. `round_off`: below which errors show no order.
   template <class Error>
@@ -56,57 +67,34 @@ class ExplicitSchemes : public ::testing::TestWithParam<Method> {
 TEST_P(ExplicitSchemes, SwingAPendulum) {
   constexpr double kFirstKind = 1.8540746773013719184;  // K(m = 1/2)
   const double rate = std::sqrt(2 * 9.81 * 0.5 / (0.03 + 2 * 0.25)), half = 2 * kFirstKind / rate;
-  const std::string text = "<robot name=\"pendulum\"><link name=\"world\"/>" + link("bob", "0.5 0 0") +
-                           R"(<joint name="hinge" type="continuous"><parent link="world"/><child link="bob"/>
-      <axis xyz="0 1 0"/></joint><simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)";
   const auto error = [&](int steps) {
-    Simulation s = simulation_of(text, GetParam().name, half / steps);
-    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    const Simulation s = after(kPendulum, kDown, half, steps);
     return std::hypot(s.position(0) - kPi, s.velocity(0) / rate);
   };
   expect_order(error, half, 1e-13);
-}
-
-constexpr double kGravity = 9.81;
-
-/// The error of angle and rate of a joint after `half` of a period [s], when it has swung from 0 by `angle`, and
-/// is at rest. `rate`: a scale of rates.
-double error_after_swing(const std::string& text, const char* joint, const char* scheme, double half, int steps,
-                         double angle, double rate) {
-  Simulation s = simulation_of(text, scheme, half / steps);
-  const Energies start = s.energies();
-  for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
-  const Energies end = s.energies();
-  EXPECT_NEAR(end.total() - end.work, start.total(), 1e-3 * (1 + std::abs(end.work))) << "a rough check of the account";
-  const std::size_t swung = *s.find_coordinate(joint);
-  return std::hypot(s.position(swung) - angle, s.velocity(swung) / rate);
 }
 
 // A pendulum on a cart that a motion accelerates by 3 m/s^2. Gravity is inclined so that the pendulum feels 9.81 m/s^2
 // along -z, and swings as on a cart at rest.
 TEST_P(ExplicitSchemes, SwingOnACartThatAMotionDrives) {
   constexpr double kFirstKind = 1.8540746773013719184;  // K(m = 1/2)
-  const double rate = std::sqrt(2 * kGravity * 0.5 / (0.03 + 2 * 0.25)), half = 2 * kFirstKind / rate;
-  const std::string text = "<robot name=\"cart\"><link name=\"world\"/>" + link("cart", "0 0 0") +
-                           link("bob", "0.5 0 0") + R"(<joint name="hinge" type="continuous"><parent link="cart"/>
-      <child link="bob"/><axis xyz="0 1 0"/></joint> <joint name="rail" type="prismatic"><parent link="world"/>
-      <child link="cart"/><axis xyz="1 0 0"/><limit lower="-9" upper="99" effort="0" velocity="9"/></joint>
-      <simulation><gravity xyz="3 0 -9.81"/> <motion joint="rail" position="1.5*t*t"/></simulation></robot>)";
+  const double rate = std::sqrt(2 * 9.81 * 0.5 / (0.03 + 2 * 0.25)), half = 2 * kFirstKind / rate;
+  const std::string parts = link("cart") + link("bob", {0.5, 0, 0}) +
+                            joint("hinge", "continuous", "cart", "bob", kAboutY) + rail("rail", "cart", "1 0 0");
   const auto error = [&](int steps) {
-    return error_after_swing(text, "hinge", GetParam().name, half, steps, kPi, rate);
+    return error_after_swing(parts, gravity({3, 0, -9.81}) + "<motion joint='rail' position='1.5*t*t'/>", "hinge", half,
+                             steps, kPi, rate);
   };
   expect_order(error, half, 1e-13);
 }
 
 // The effort of a motion is that of the equation of motion, and its work the change of energy.
 TEST_P(ExplicitSchemes, FindTheEffortOfAMotion) {
-  const std::string text = "<robot name=\"wheel\"><link name=\"world\"/>" + link("wheel", "0 0 0") + R"xml(
-      <joint name="hinge" type="continuous"><parent link="world"/><child link="wheel"/><axis xyz="0 1 0"/>
-      <dynamics damping="0.5"/></joint>
-      <simulation><motion joint="hinge" position="sin(4*t)"/></simulation></robot>)xml";
   constexpr double kStep = 0.02;
-  Simulation s = simulation_of(text, GetParam().name, kStep);
-  const Energies start = s.energies();
+  Simulation s =
+      simulated(link("wheel") + joint("hinge", "continuous", "world", "wheel", kAboutY + "<dynamics damping='0.5'/>"),
+                "<motion joint='hinge' position='sin(4*t)'/>", kStep);
+  const double start = energy_account(s);
   for (int n = 0; n < 20; ++n) {
     ASSERT_TRUE(s.step().converged);
     const double t = s.time();
@@ -114,42 +102,33 @@ TEST_P(ExplicitSchemes, FindTheEffortOfAMotion) {
     EXPECT_NEAR(s.velocity(0), 4 * std::cos(4 * t), 1e-10);
     EXPECT_NEAR(s.effort(0), -0.03 * 16 * std::sin(4 * t) + 0.5 * 4 * std::cos(4 * t), 1e-9);
   }
-  const Energies end = s.energies();
-  const double tolerance = GetParam().order == 4 ? std::pow(4 * kStep, 4) : 1e-9;
-  EXPECT_NEAR(end.total() - end.work + end.dissipated, start.total(), tolerance);
+  EXPECT_NEAR(energy_account(s), start, GetParam().order == 4 ? std::pow(4 * kStep, 4) : 1e-9);
 }
 
 // A motion whose rate jumps strikes what it carries: the wheel of a trolley that suddenly stops keeps its momentum.
 TEST_P(ExplicitSchemes, TakeTheImpulsesOfMotions) {
-  const std::string text = "<robot name=\"trolley\"><link name=\"world\"/>" + link("trolley", "0 0 0") +
-                           link("bob", "0 0 -0.5") + R"(<joint name="rail" type="prismatic"><parent link="world"/>
-      <child link="trolley"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="9"/></joint>
-      <joint name="hinge" type="continuous"><parent link="trolley"/><child link="bob"/><axis xyz="0 1 0"/></joint>
-      <simulation><gravity xyz="0 0 0"/> <motion joint="rail" position="t &lt; 0.5 ? t : 0.5"/></simulation></robot>)";
-  Simulation s = simulation_of(text, GetParam().name, 0.1);
-  const std::size_t hinge = *s.find_coordinate("hinge");
-  while (s.time() < 1 - 1e-9) ASSERT_TRUE(s.step().converged);
+  Simulation s = simulated(link("trolley") + link("bob", {0, 0, -0.5}) + rail("rail", "trolley", "1 0 0") +
+                               joint("hinge", "continuous", "trolley", "bob", kAboutY),
+                           gravity({0, 0, 0}) + "<motion joint='rail' position='t &lt; 0.5 ? t : 0.5'/>", 0.1);
+  run_until(s, 1);
   // m v a = (J + m a^2) w; the hinge turns about y, from x to -z.
-  EXPECT_NEAR(s.velocity(hinge), -2 * 0.5 * 1 / (0.03 + 2 * 0.25), 1e-9);
-  EXPECT_NEAR(s.energies().total() - s.energies().work, 0.5 * (2 + 2) * 1, 1e-9);
+  EXPECT_NEAR(s.velocity(*s.find_coordinate("hinge")), -2 * 0.5 * 1 / (0.03 + 2 * 0.25), 1e-9);
+  EXPECT_NEAR(energy_account(s), 0.5 * (2 + 2) * 1, 1e-9);
 }
 
 // A spring that a program applies pulls a block on a rail: a harmonic oscillator. Its work is the change of energy.
 TEST_P(ExplicitSchemes, ArePulled) {
   const double rate = std::sqrt(50.0 / 2), half = kPi / rate;
-  const std::string text = "<robot name=\"block\"><link name=\"world\"/>" + link("block", "0 0 0") + R"(
-      <joint name="rail" type="prismatic"><parent link="world"/><child link="block"/><axis xyz="1 0 0"/>
-      <limit lower="-9" upper="9" effort="0" velocity="9"/></joint><simulation/></robot>)";
   const auto error = [&](int steps) {
-    Simulation s = simulation_of(text, GetParam().name, half / steps);
+    Simulation s = simulated(link("block") + rail("rail", "block", "1 0 0"), "", half / steps);
     AppliedWrench spring;
     spring.link = 1;
     spring.at = {0.1, 0, 0};
     spring.pull.target = {0.5, 0, 0};
     spring.pull.stiffness = 50;
     s.apply_wrenches({spring});
-    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
-    EXPECT_NEAR(s.energies().total() - s.energies().work, 0, 1e-3);
+    run(s, steps);
+    EXPECT_NEAR(energy_account(s), 0, 1e-3);
     return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
   };
   expect_order(error, half * rate / 3.5, 1e-14);
@@ -158,14 +137,12 @@ TEST_P(ExplicitSchemes, ArePulled) {
 // A joint with a spring and another one that follows it: a harmonic oscillator.
 TEST_P(ExplicitSchemes, FollowOtherJoints) {
   const double inertia = 0.03 + 1.5 * 1.5 * 0.04, rate = std::sqrt(7 / inertia), half = kPi / rate;
-  const std::string text = "<robot name=\"gears\"><link name=\"world\"/>" + link("first", "0 0 0") +
-                           link("second", "0 0 0") + R"(<joint name="a" type="continuous"><parent link="world"/>
-      <child link="first"/><axis xyz="0 1 0"/></joint> <joint name="b" type="continuous"><parent link="world"/>
-      <child link="second"/><axis xyz="0 0 1"/><mimic joint="a" multiplier="-1.5" offset="0.2"/></joint>
-      <spring joint="a" stiffness="7" rest="0.4"/> <simulation/></robot>)";
+  const std::string parts = link("first") + link("second") + joint("a", "continuous", "world", "first", kAboutY) +
+                            joint("b", "continuous", "world", "second",
+                                  "<axis xyz='0 0 1'/><mimic joint='a' multiplier='-1.5' offset='0.2'/>") +
+                            "<spring joint='a' stiffness='7' rest='0.4'/>";
   const auto error = [&](int steps) {
-    Simulation s = simulation_of(text, GetParam().name, half / steps);
-    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    const Simulation s = after(parts, "", half, steps);
     EXPECT_NEAR(s.position(1), 0.2 - 1.5 * s.position(0), 1e-14);
     EXPECT_NEAR(s.velocity(1), -1.5 * s.velocity(0), 1e-13);
     return std::hypot(s.position(0) - 0.8, s.velocity(0) / rate);
@@ -176,38 +153,30 @@ TEST_P(ExplicitSchemes, FollowOtherJoints) {
 // A parallelogram linkage swings as a pendulum: its coupler is not turned. It is let go at 60 degrees.
 TEST_P(ExplicitSchemes, SwingAParallelogram) {
   constexpr double kFirstKind = 1.6857503548125960429;  // K(m = sin^2(30 degrees))
-  const double rate = std::sqrt((2 * 0.5 * 2 + 2 * 1) * kGravity / (2 * (0.03 + 2 * 0.25) + 2)),
+  const double rate = std::sqrt((2 * 0.5 * 2 + 2 * 1) * 9.81 / (2 * (0.03 + 2 * 0.25) + 2)),
                half = 2 * kFirstKind / rate;
-  const std::string centre = "0.43301270189221932 0 -0.25", end = "0.86602540378443865 0 -0.5";
-  const std::string text = "<robot name=\"parallelogram\"><link name=\"world\"/>" + link("crank", centre) +
-                           link("coupler", "0.4 0 0.1") + link("rocker", centre) +
-                           R"(<joint name="crank" type="continuous"><parent link="world"/><child link="crank"/>
-      <axis xyz="0 1 0"/></joint> <joint name="knee" type="continuous"><parent link="crank"/><child link="coupler"/>
-      <origin xyz=")" + end +
-                           R"("/><axis xyz="0 1 0"/></joint>
-      <joint name="foot" type="continuous"><parent link="world"/><child link="rocker"/><origin xyz="0.8 0 0"/>
-      <axis xyz="0 1 0"/></joint> <loop_joint name="hip" type="continuous"><parent link="rocker"/>
-      <child link="coupler"/><origin xyz=")" +
-                           end + R"("/><child_origin xyz="0.8 0 0"/><axis xyz="0 1 0"/></loop_joint>
-      <simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)";
+  const Vector3 centre(0.43301270189221932, 0, -0.25);
+  const std::string end = "<origin xyz='" + xyz(2 * centre) + "'/>";
+  const std::string parts =
+      link("crank", centre) + link("coupler", {0.4, 0, 0.1}) + link("rocker", centre) +
+      joint("crank", "continuous", "world", "crank", kAboutY) +
+      joint("knee", "continuous", "crank", "coupler", end + kAboutY) +
+      joint("foot", "continuous", "world", "rocker", "<origin xyz='0.8 0 0'/>" + kAboutY) +
+      joint("hip", "continuous", "rocker", "coupler", end + "<child_origin xyz='0.8 0 0'/>" + kAboutY, "loop_joint");
   const auto error = [&](int steps) {
-    return error_after_swing(text, "crank", GetParam().name, half, steps, 2 * kPi / 3, rate);
+    return error_after_swing(parts, kDown, "crank", half, steps, 2 * kPi / 3, rate);
   };
   expect_order(error, 1.6 * half, 1e-14);
 }
 
 // The four-bar linkage of the speed report, driven: positions and efforts are those of em4 with short steps.
 TEST_P(ExplicitSchemes, DriveAFourBar) {
-  const scene::ReadResult read = scene::read_scene_file(source_path("config/speed/rigid_four_bar.urdf"));
-  ASSERT_TRUE(read.scene);
+  const scene::SceneDescription scene = scene_at("config/speed/rigid_four_bar.urdf");
   const auto end = [&](const std::string& scheme, double step) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    options.step = step;
-    Simulation s(*read.scene, options);
-    const double start = s.energies().total();
-    while (s.time() < 1 - 1e-9) EXPECT_TRUE(s.step().converged);
-    EXPECT_NEAR(s.energies().total() - s.energies().work, start, 1e-6);
+    Simulation s(scene, options(scheme, step));
+    const double start = energy_account(s);
+    run_until(s, 1);
+    EXPECT_NEAR(energy_account(s), start, 1e-6);
     return s;
   };
   Simulation s = end(GetParam().name, GetParam().order == 4 ? 2e-3 : 1e-2), reference = end("em4", 1e-3);
@@ -219,11 +188,7 @@ TEST_P(ExplicitSchemes, DriveAFourBar) {
 // Velocities and accelerations of output are those of the equations at the end of the step, whatever its length.
 TEST_P(ExplicitSchemes, PublishVelocitiesAndAccelerations) {
   constexpr double kInertia = 0.03 + 2 * 0.25;
-  const std::string text = "<robot name=\"pendulum\"><link name=\"world\"/>" + link("bob", "0.5 0 0") +
-                           R"(<joint name="hinge" type="continuous"><parent link="world"/><child link="bob"/>
-      <axis xyz="0 1 0"/></joint><simulation><gravity xyz="0 0 -9.81"/> <probe name="tip" link="bob" at="1 0 0"/>
-      </simulation></robot>)";
-  Simulation s = simulation_of(text, GetParam().name, 0.05);
+  Simulation s = simulated(kPendulum, kDown + "<probe name='tip' link='bob' at='1 0 0'/>", 0.05);
   for (int n = 0; n < 12; ++n) {
     ASSERT_TRUE(s.step().converged);
     const double angle = s.position(0), rate = s.velocity(0), change = 2 * 9.81 * 0.5 * std::cos(angle) / kInertia;
@@ -238,16 +203,14 @@ TEST_P(ExplicitSchemes, PublishVelocitiesAndAccelerations) {
 // A symmetric top without loads: its axis turns about the angular momentum L with |L| / A, and it spins about the axis
 // with w (A - C) / A; A, C: moments of inertia across and along the axis, w: the angular velocity along it.
 TEST_P(ExplicitSchemes, SpinATop) {
-  const std::string text = "<robot name=\"top\"><link name=\"world\"/>" + link("top", "0 0 0", "0.3 0.3 0.5") +
-                           R"(<joint name="free" type="floating"><parent link="world"/><child link="top"/></joint>
-      <simulation><gravity xyz="0 0 0"/><initial link="top" linear="0.3 -0.2 0.1" angular="0.8 0 2"/></simulation></robot>)";
+  const std::string top = link("top", {0, 0, 0}, {0.3, 0.3, 0.5}) + joint("free", "floating", "world", "top"),
+                    spin = gravity({0, 0, 0}) + "<initial link='top' linear='0.3 -0.2 0.1' angular='0.8 0 2'/>";
   constexpr double kTime = 4;
   const Vector3 momentum(0.3 * 0.8, 0, 0.5 * 2);
   const Quaternion turned = Quaternion(Eigen::AngleAxisd(kTime * momentum.norm() / 0.3, momentum.normalized())) *
                             Quaternion(Eigen::AngleAxisd(kTime * 2 * (0.3 - 0.5) / 0.3, Vector3::UnitZ()));
   const auto error = [&](int steps) {
-    Simulation s = simulation_of(text, GetParam().name, kTime / steps);
-    for (int n = 0; n < steps; ++n) EXPECT_TRUE(s.step().converged);
+    const Simulation s = after(top, spin, kTime, steps);
     const Pose pose = s.link_pose(1);
     EXPECT_LT((pose.position - kTime * Vector3(0.3, -0.2, 0.1)).norm(), 1e-12);
     return pose.orientation.angularDistance(turned);
@@ -258,25 +221,19 @@ TEST_P(ExplicitSchemes, SpinATop) {
 // Two links with springs, dampers, smooth friction, rotors, an effort and a load: what the energy lacks is the work and
 // what was dissipated, up to the error of the steps. Results are those of em4 with short steps.
 TEST_P(ExplicitSchemes, KeepTheAccount) {
-  const std::string text =
-      "<robot name=\"arm\"><link name=\"world\"/>" + link("upper", "0.3 0 0") + link("fore", "0.2 0.1 0") + R"xml(
-    <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/> <axis xyz="0 1 0"/>
-      <dynamics damping="0.3"/></joint>
-    <joint name="elbow" type="prismatic"><parent link="upper"/><child link="fore"/> <axis xyz="1 0 0"/>
-      <origin xyz="0.6 0 0" rpy="0.3 0 0.2"/> <limit lower="-2" upper="2" effort="100" velocity="9"/>
-      <dynamics damping="1"/></joint>
-    <spring joint="elbow" stiffness="60" rest="0.1"/> <drive joint="shoulder" rotor_inertia="0.1"/>
-    <simulation><gravity xyz="0 0 -9.81"/> <effort joint="shoulder" history="3*sin(5*t)"/>
-      <load link="fore" at="0.1 0 0.2" force="2 -1 3" frame="follower" history="1+t"/> </simulation></robot>)xml";
-  const double step = GetParam().order == 4 ? 2e-3 : 1e-2;
-  Simulation s = simulation_of(text, GetParam().name, step), reference = simulation_of(text, "em4", 1e-3);
-  const double start = s.energies().total();
-  while (s.time() < 1 - 1e-9) {
-    ASSERT_TRUE(s.step().converged);
-    const Energies now = s.energies();
-    EXPECT_NEAR(now.total() + now.dissipated - now.work, start, 1e-6);  // energies of 10 J
-  }
-  while (reference.time() < 1 - 1e-9) ASSERT_TRUE(reference.step().converged);
+  const std::string parts =
+      kTwoLinks + joint("shoulder", "continuous", "world", "upper", kAboutY + "<dynamics damping='0.3'/>") +
+      joint("elbow", "prismatic", "upper", "fore",
+            "<axis xyz='1 0 0'/><origin xyz='0.6 0 0' rpy='0.3 0 0.2'/><dynamics damping='1'/>" + kFarLimits) +
+      "<spring joint='elbow' stiffness='60' rest='0.1'/> <drive joint='shoulder' rotor_inertia='0.1'/>";
+  const std::string entries = kDown +
+                              "<effort joint='shoulder' history='3*sin(5*t)'/>"
+                              "<load link='fore' at='0.1 0 0.2' force='2 -1 3' frame='follower' history='1+t'/>";
+  Simulation s = simulated(parts, entries, GetParam().order == 4 ? 2e-3 : 1e-2),
+             reference = simulation_of(parts, entries, "em4", 1e-3);
+  const double start = energy_account(s);
+  run_until(s, 1, [&] { EXPECT_NEAR(energy_account(s), start, 1e-6); });  // energies of 10 J
+  run_until(reference, 1);
   EXPECT_GT(s.energies().dissipated, 0.1);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(s.position(i), reference.position(i), 1e-6);
@@ -288,35 +245,26 @@ TEST_P(ExplicitSchemes, KeepTheAccount) {
 }
 
 TEST_P(ExplicitSchemes, GoOnFromARestoredStateBitByBit) {
-  const std::string text =
-      "<robot name=\"arm\"><link name=\"world\"/>" + link("upper", "0.3 0 0") + link("fore", "0.2 0.1 0") + R"xml(
-    <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/> <axis xyz="0 0.6 0.8"/></joint>
-    <joint name="ball" type="spherical"><parent link="upper"/><child link="fore"/> <origin xyz="0.6 0 0"/></joint>
-    <simulation><gravity xyz="0 0 -9.81"/></simulation></robot>)xml";
-  const scene::ReadResult read = scene::read_scene_text(text, "explicit.urdf");
-  ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-  SimulationOptions options;
-  options.scheme = GetParam().name;
-  options.reuse_factorisation = false;
-  Simulation s(*read.scene, options);
-  for (int n = 0; n < 7; ++n) ASSERT_TRUE(s.step().converged);
+  const std::string parts = kTwoLinks + joint("shoulder", "continuous", "world", "upper", "<axis xyz='0 0.6 0.8'/>") +
+                            joint("ball", "spherical", "upper", "fore", "<origin xyz='0.6 0 0'/>");
+  Simulation s(scene_of(robot(parts, kDown)), full_newton(options(GetParam().name)));
+  run(s, 7);
   const Snapshot middle = s.snapshot();
-  for (int n = 0; n < 9; ++n) ASSERT_TRUE(s.step().converged);
+  run(s, 9);
   const Pose end = s.link_pose(2);
   s.restore(middle);
-  for (int n = 0; n < 9; ++n) ASSERT_TRUE(s.step().converged);
+  run(s, 9);
   EXPECT_EQ(s.link_pose(2).position, end.position);
   EXPECT_EQ(s.link_pose(2).orientation.coeffs(), end.orientation.coeffs());
 }
 
 // What a step had computed when it failed is not used by later ones.
 TEST_P(ExplicitSchemes, GoOnAfterAFailure) {
-  const std::string text = "<robot name=\"arm\"><link name=\"world\"/>" + link("arm", "0.3 0 0") + R"xml(
-    <joint name="hinge" type="revolute"><parent link="world"/><child link="arm"/> <axis xyz="0 1 0"/>
-      <limit lower="-3" upper="3" effort="100" velocity="9"/></joint>
-    <simulation><load link="arm" at="1 0 0" force="0 0 1" history="t &lt; 0.55 ? 1 : sqrt(-1)"/></simulation></robot>)xml";
-  Simulation s = simulation_of(text, GetParam().name, 0.1);
-  for (int n = 0; n < 5; ++n) ASSERT_TRUE(s.step().converged);
+  Simulation s =
+      simulated(link("arm", {0.3, 0, 0}) + joint("hinge", "revolute", "world", "arm",
+                                                 kAboutY + "<limit lower='-3' upper='3' effort='100' velocity='9'/>"),
+                "<load link='arm' at='1 0 0' force='0 0 1' history='t &lt; 0.55 ? 1 : sqrt(-1)'/>", 0.1);
+  run(s, 5);
   EXPECT_FALSE(s.step().converged);
   EXPECT_GT(s.time(), 0.54);  // sub-steps went on after the first one had failed
   EXPECT_LE(s.time(), 0.55);
@@ -325,33 +273,24 @@ TEST_P(ExplicitSchemes, GoOnAfterAFailure) {
 
 // A scene with something that explicit schemes do not have is refused by name.
 TEST_P(ExplicitSchemes, RefuseWhatTheyDoNotHave) {
-  const auto refusal = [&](const std::string& parts, const std::string& options = "") {
-    try {
-      simulation_of("<robot name=\"arm\"><link name=\"world\"/>" + link("arm", "0.3 0 0") + parts + "<simulation>" +
-                        options + "</simulation></robot>",
-                    GetParam().name, 1e-3);
-    } catch (const ModelError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+  const auto refused = [&](const std::string& of_joint, const std::string& more = "") {
+    return refusal<ModelError>([&] {
+      simulated(link("arm", {0.3, 0, 0}) + joint("hinge", "continuous", "world", "arm", of_joint) + more, "", 1e-3);
+    });
   };
-  const std::string hinge = R"(<joint name="hinge" type="continuous"><parent link="world"/><child link="arm"/>)",
-                    end = "</joint>";
-  EXPECT_EQ(refusal(hinge + end), "accepted");
-  const std::string refused = std::string("scheme '") + GetParam().name + "' has no ";
-  const auto expect_no = [&](const std::string& what, const std::string& text) {
-    EXPECT_NE(text.find(refused + what), std::string::npos) << text;
-  };
-  EXPECT_EQ(refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" stiffness="900"/>)"), "accepted");
-  expect_no("losses of rigid gears",
-            refusal(hinge + end + R"(<drive joint="hinge" rotor_inertia="0.1" efficiency="0.9"/>)"));
-  expect_no("dry friction", refusal(hinge + R"(<dynamics friction="1"/><friction law="coulomb"/>)" + end));
-  expect_no("springs, lines, drag or contacts",
-            refusal(hinge + end + R"(<spring name="coil" stiffness="1" rest_length="1"
-      from="world" from_at="1 1 0" to="arm" to_at="0 0 1"/>)"));
-  expect_no("flexible links", refusal(hinge + end + R"(<joint name="glue" type="fixed"><parent link="arm"/>
-      <child link="rod"/></joint><link name="rod"><beam elements="1"><centerline><line to="1 0 0"/></centerline>
-      <section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/></beam></link>)"));
+  EXPECT_EQ(refused(""), "");
+  EXPECT_EQ(refused("", "<drive joint='hinge' rotor_inertia='0.1' stiffness='900'/>"), "");
+  const std::string none = std::string("scheme '") + GetParam().name + "' has no ";
+  expect_contains(refused("", "<drive joint='hinge' rotor_inertia='0.1' efficiency='0.9'/>"),
+                  none + "losses of rigid gears");
+  expect_contains(refused("<dynamics friction='1'/><friction law='coulomb'/>"), none + "dry friction");
+  expect_contains(refused("", R"(<spring name="coil" stiffness="1" rest_length="1" from="world" from_at="1 1 0" to="arm"
+      to_at="0 0 1"/>)"),
+                  none + "springs, lines, drag or contacts");
+  expect_contains(refused("", joint("glue", "fixed", "arm", "rod") + R"(<link name="rod"><beam elements="1"><centerline>
+      <line to="1 0 0"/></centerline><section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3"
+      j2="5e-4" j3="5e-4"/></beam></link>)"),
+                  none + "flexible links");
 }
 
 // A block is pushed by P against its motion, and rubs with F tanh(v/s), which reverses within a fiftieth of a step.
@@ -364,13 +303,11 @@ TEST_P(ExplicitSchemes, ReverseSmoothFriction) {
         u + std::log(0.5 * (kPush + sign * kFriction) + 0.5 * (kPush - sign * kFriction) * std::exp(-2 * u));
     return kPush * v - kFriction * kSpeed * log_sum;
   };
-  Simulation simulation = simulation_of("<robot name=\"rail\"><link name=\"world\"/>" + link("block", "0 0 0") +
-                                            R"(<joint name="rail" type="prismatic"><parent link="world"/>
-      <child link="block"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="0"/>
-      <dynamics friction="2"/></joint><simulation><gravity xyz="0 0 0"/><initial joint="rail" velocity="1"/>
-      <effort joint="rail" history="-5"/></simulation></robot>)",
-                                        GetParam().name, kStep);
-  while (simulation.time() < 0.8) ASSERT_TRUE(simulation.step().converged);
+  Simulation simulation =
+      simulated(link("block") + joint("rail", "prismatic", "world", "block",
+                                      "<axis xyz='1 0 0'/><dynamics friction='2'/>" + kFarLimits),
+                gravity({0, 0, 0}) + "<initial joint='rail' velocity='1'/><effort joint='rail' history='-5'/>", kStep);
+  run_until(simulation, 0.8);
   const double v = simulation.velocity(0);
   ASSERT_LT(v, -0.5);
   const double time = kMass * (primitive(kStart) - primitive(v)) / (kPush * kPush - kFriction * kFriction);

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "reference/explicit_runs.h"
-#include "reference/observed_order.h"
 #include "reference/one_coordinate_scenes.h"
 #include "simulation/inside.h"
 

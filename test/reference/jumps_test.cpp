@@ -5,11 +5,9 @@
 #include <fmt/format.h>
 
 #include "math/pi.h"
-#include "reference/observed_order.h"
 #include "reference/ode.h"
 #include "reference/one_coordinate_scenes.h"
 #include "reference/reference_cantilever.h"
-#include "reference/strains.h"
 #include "support/scheme_variants.h"
 
 namespace flexarm::test {

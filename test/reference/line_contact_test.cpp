@@ -1,48 +1,37 @@
 // Tests contacts with the smooth lines of beams: with balls, other beams, and the beam itself, against closed forms.
 #include <algorithm>
 
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
 #include "math/pi.h"
 #include "reference/contact_scenes.h"
 
-namespace flexarm::test::touching_lines {
+namespace flexarm::test::touching {
 namespace {
-
-using touching::ball;
-using touching::kG;
-using touching::start;
 
 struct Rod {
   Vector3 to;
   double radius = 0.01, young = 7e10, density = 2700;
   int elements = 4, order = 2;
 };
-std::string rod(const std::string& name, const Rod& rod) {
-  return fmt::format(
-      "<link name=\"{}\"><beam elements=\"{}\" order=\"{}\"><centerline><line to=\"{:.17g} {:.17g} {:.17g}\"/>"
-      "</centerline><circle radius=\"{:.17g}\"/><material young=\"{:.17g}\" poisson=\"0.3\" "
-      "density=\"{:.17g}\"/></beam>"
-      "</link>",
-      name, rod.elements, rod.order, rod.to.x(), rod.to.y(), rod.to.z(), rod.radius, rod.young, rod.density);
+std::string line_of(const std::string& name, const Rod& rod) {
+  return round_beam(name, "<line to='" + xyz(rod.to) + "'/>", rod.radius,
+                    fmt::format("<material young='{:.17g}' poisson='0.3' density='{:.17g}'/>", rod.young, rod.density),
+                    rod.elements, rod.order);
 }
 double bending_stiffness(const Rod& rod) {
   return rod.young * 0.25 * kPi * std::pow(rod.radius, 4);
 }
 
-std::string joint(const std::string& link, const std::string& type, const Vector3& place = {0, 0, 0}) {
-  return fmt::format(
-      "<joint name=\"of_{0}\" type=\"{1}\"><parent link=\"world\"/><child link=\"{0}\"/><origin xyz=\"{2:.17g} "
-      "{3:.17g} "
-      "{4:.17g}\"/><axis xyz=\"0 0 1\"/></joint>",
-      link, type, place.x(), place.y(), place.z());
+std::string clamped(const std::string& link, const Vector3& place = {0, 0, 0}) {
+  return joint("of_" + link, "fixed", "world", link, "<origin xyz='" + xyz(place) + "'/>");
+}
+/// A slider that carries a link up and down at a place along x.
+std::string upright(const std::string& link, double x) {
+  return joint("of_" + link, "prismatic", "world", link,
+               fmt::format("<origin xyz='{} 0 0'/><axis xyz='0 0 1'/>", x) + kFarLimits);
 }
 
-Simulation simulation_of(const std::string& parts, const std::string& starts, double step,
-                         const Vector3& gravity = {0, 0, 0}) {
-  return touching::simulation_of(parts, starts, step, gravity);
+Simulation weightless(const std::string& parts, const std::string& starts, double step) {
+  return simulation_of(parts, starts, step, {0, 0, 0});
 }
 
 /// Smallest distance between points on two links' lines, in steps of 1/100 of their lengths. On one link, only points
@@ -69,20 +58,14 @@ double distance_of(const Simulation& simulation, const Vector3& point, std::size
   return nearest;
 }
 
-double account(const Simulation& simulation) {
-  const Energies energies = simulation.energies();
-  return energies.total() + energies.dissipated - energies.work;
-}
-
 // ---------------------------------------------------------------- balls
 
 /// A ball that is smaller than the distance of the beam's stations, half-way between two stations.
 Simulation ball_over_a_thin_beam(double restitution) {
-  return simulation_of(
-      rod("wire", {{1, 0, 0}, 0.003, 7e10, 2700, 4, 2}) + joint("wire", "fixed") + ball("ball", 0.002, 0.004) +
-          joint("ball", "floating") +
-          fmt::format("<contact first=\"ball\" second=\"wire\" restitution=\"{}\" stiffness=\"2000\"/>", restitution),
-      start("ball", {0.140625, 0, 0.02}, {0, 0, -0.5}), 5e-4, {0, 0, -kG});
+  return simulation_of(line_of("wire", {{1, 0, 0}, 0.003, 7e10, 2700, 4, 2}) + clamped("wire") +
+                           ball("ball", 0.002, 0.004) + floating("ball") +
+                           contact_of("ball", "wire", fmt::format("restitution='{}' stiffness='2000'", restitution)),
+                       start("ball", {0.140625, 0, 0.02}, {0, 0, -0.5}), 5e-4);
 }
 
 TEST(LineContact, BallBouncesOnAThinBeamBetweenItsStations) {
@@ -91,8 +74,7 @@ TEST(LineContact, BallBouncesOnAThinBeamBetweenItsStations) {
   int bounces = 0;
   double last = 0;
   while (bounces < 30 && simulation.time() < 3) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged) << simulation.explain(result);
+    ASSERT_TRUE(steps(simulation));
     const double distance = distance_of(simulation, simulation.link_pose(2).position, 1, 1);
     ASSERT_GT(distance, 0.9 * 0.003 + 0.004) << simulation.time();
     bounces += last >= 0.007 && distance < 0.007;
@@ -104,38 +86,25 @@ TEST(LineContact, BallBouncesOnAThinBeamBetweenItsStations) {
 
 TEST(LineContact, NothingGoesThroughAThinBeam) {
   for (const double speed : {1.0, 100.0}) {
-    Simulation simulation = simulation_of(rod("wire", {{1, 0, 0}, 0.002, 2e11, 7800, 4, 2}) + joint("wire", "fixed") +
-                                              ball("ball", 1e-3, 0.002) + joint("ball", "floating") +
-                                              "<contact first=\"ball\" second=\"wire\" restitution=\"0.5\"/>",
-                                          start("ball", {0.53, 0, 0.03}, {0, 0, -speed}), 1e-3);
-    const double begin = account(simulation);
-    while (simulation.time() < 0.06 + 0.06 / speed) {
-      const StepResult result = simulation.step();
-      ASSERT_TRUE(result.converged) << simulation.explain(result);
-    }
+    Simulation simulation =
+        weightless(line_of("wire", {{1, 0, 0}, 0.002, 2e11, 7800, 4, 2}) + clamped("wire") + ball("ball", 1e-3, 0.002) +
+                       floating("ball") + contact_of("ball", "wire", "restitution='0.5'"),
+                   start("ball", {0.53, 0, 0.03}, {0, 0, -speed}), 1e-3);
+    const double begin = energy_account(simulation);
+    run_until(simulation, 0.06 + 0.06 / speed);
     const double height = simulation.link_pose(2).position.z();
     EXPECT_GT(height, simulation.section(1, 0.53).pose.position.z() + 0.0035) << speed;
-    EXPECT_NEAR(account(simulation), begin, 1e-6 * begin) << speed;
+    EXPECT_NEAR(energy_account(simulation), begin, 1e-6 * begin) << speed;
   }
 }
 
 // Elements of 0.25 m have stations every 31 mm. A box of 10 mm would fall between them.
 TEST(LineContact, SmallBoxLiesOnAThinBeamBetweenItsStations) {
-  const double size = 0.01, mass = 0.01;
-  const std::string box = fmt::format(
-      "<link name=\"box\"><inertial><mass value=\"{0}\"/><inertia ixx=\"{1}\" iyy=\"{1}\" izz=\"{1}\" ixy=\"0\" "
-      "ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"{2} {2} {2}\"/></geometry></collision></link>",
-      mass, mass * size * size / 6, size);
-  Simulation simulation = simulation_of(
-      rod("wire", {{1, 0, 0}, 0.003, 2e11, 7800, 4, 2}) + joint("wire", "fixed") + box +
-          "<joint name=\"of_box\" type=\"prismatic\"><parent link=\"world\"/><child link=\"box\"/>"
-          "<origin xyz=\"0.140625 0 0\"/><axis xyz=\"0 0 1\"/><limit effort=\"1e9\" velocity=\"1e9\" lower=\"-1\" "
-          "upper=\"1\"/></joint><contact first=\"box\" second=\"wire\"/>",
-      "<initial joint=\"of_box\" position=\"0.012\"/>", 1e-3, {0, 0, -kG});
-  while (simulation.time() < 0.5) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged) << simulation.explain(result);
-  }
+  Simulation simulation = simulation_of(line_of("wire", {{1, 0, 0}, 0.003, 2e11, 7800, 4, 2}) + clamped("wire") +
+                                            box("box", 0.01, Vector3::Constant(0.01)) + upright("box", 0.140625) +
+                                            contact_of("box", "wire"),
+                                        "<initial joint='of_box' position='0.012'/>", 1e-3);
+  run_until(simulation, 0.5);
   const double height = simulation.link_pose(2).position.z() - simulation.section(1, 0.140625).pose.position.z();
   EXPECT_LT(height, 0.0081) << "it has fallen";
   EXPECT_GT(height, 0.008 - 0.1 * 0.003) << "as far as it gives way at most";
@@ -145,13 +114,10 @@ TEST(LineContact, SmallBoxLiesOnAThinBeamBetweenItsStations) {
 TEST(LineContact, BallRestsOnABeam) {
   const Rod beam{{1, 0, 0}, 0.01, 7e10, 1e-3, 5, 3};
   const double mass = 0.2, at = 0.63, radius = 0.02, stiffness = 1e4;
-  Simulation simulation = simulation_of(
-      rod("beam", beam) + joint("beam", "fixed") + ball("ball", mass, radius) +
-          "<joint name=\"of_ball\" type=\"prismatic\"><parent link=\"world\"/><child link=\"ball\"/>"
-          "<origin xyz=\"0.63 0 0\"/><axis xyz=\"0 0 1\"/><limit effort=\"1e9\" velocity=\"1e9\" lower=\"-1\" "
-          "upper=\"1\"/></joint>" +
-          fmt::format("<contact first=\"ball\" second=\"beam\" stiffness=\"{}\"/>", stiffness),
-      fmt::format("<initial joint=\"of_ball\" position=\"{}\"/>", radius + beam.radius - 1e-6), 1e-3, {0, 0, -kG});
+  Simulation simulation =
+      simulation_of(line_of("beam", beam) + clamped("beam") + ball("ball", mass, radius) + upright("ball", at) +
+                        contact_of("ball", "beam", fmt::format("stiffness='{}'", stiffness)),
+                    fmt::format("<initial joint='of_ball' position='{}'/>", radius + beam.radius - 1e-6), 1e-3);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   const double deflection = mass * kG * std::pow(at, 3) / (3 * bending_stiffness(beam));
   const double penetration = mass * kG / stiffness;  // the contact hardens by 2 (p / d)^2, which is 0.08 here
@@ -182,17 +148,14 @@ TEST(LineContact, BallRestsOnABeam) {
 // gives 0.09797, 0.09813, 0.09817 m/s with 8, 12, 16 modes, and -2.337e-4 m. Shear and rotary inertia have relative
 // effects of (radius times wave number)^2: 0.5 % in the 12th mode.
 TEST(LineContact, BallHitsABeamFromTheSide) {
-  Simulation simulation = simulation_of(
-      rod("beam", {{1, 0, 0}, 0.005, 2e11, 7800, 8, 3}) + joint("beam", "fixed") + ball("ball", 0.05, 0.02) +
-          joint("ball", "floating") + "<contact first=\"ball\" second=\"beam\" restitution=\"1\" stiffness=\"1e5\"/>",
-      start("ball", {0.5, 0, 0.0251}, {0, 0, -0.2}), 2e-5);
-  const auto run_to = [&](double time) {
-    while (simulation.time() < time - 1e-6) ASSERT_TRUE(simulation.step().converged);
-  };
-  run_to(0.01);
+  Simulation simulation =
+      weightless(line_of("beam", {{1, 0, 0}, 0.005, 2e11, 7800, 8, 3}) + clamped("beam") + ball("ball", 0.05, 0.02) +
+                     floating("ball") + contact_of("ball", "beam", "restitution='1' stiffness='1e5'"),
+                 start("ball", {0.5, 0, 0.0251}, {0, 0, -0.2}), 2e-5);
+  run_until(simulation, 0.01);
   const double begin = simulation.link_pose(2).position.z();
   EXPECT_NEAR(simulation.section(1, 0.5).pose.position.z(), -2.337e-4, 0.01 * 2.337e-4);
-  run_to(0.012);
+  run_until(simulation, 0.012);
   EXPECT_NEAR((simulation.link_pose(2).position.z() - begin) / 0.002, 0.0982, 0.01 * 0.0982);
 }
 
@@ -201,10 +164,9 @@ TEST(LineContact, BallHitsABeamFromTheSide) {
 /// Springs pull two beams together, which hit each other again and again. There are no other forces.
 void expect_conserved_hits(const std::string& second, const std::string& springs, const std::string& second_start) {
   const Rod along{{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2};
-  Simulation simulation =
-      simulation_of(rod("one", along) + second + joint("one", "floating") + joint("two", "floating") + springs +
-                        "<contact first=\"one\" second=\"two\" restitution=\"1\" stiffness=\"1e5\"/>",
-                    second_start, 1e-3);
+  Simulation simulation = weightless(line_of("one", along) + second + floating("one") + floating("two") + springs +
+                                         contact_of("one", "two", "restitution='1' stiffness='1e5'"),
+                                     second_start, 1e-3);
   simulation.set_tolerance(1e-10);
   const double energy = simulation.energies().total();
   const Vector3 momentum = simulation.momentum(), angular = simulation.angular_momentum();
@@ -216,8 +178,7 @@ void expect_conserved_hits(const std::string& second, const std::string& springs
   int hits = 0;
   double last = height(2) - height(1), before = last;
   while (hits < 100 && simulation.time() < 20) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged) << simulation.explain(result);
+    ASSERT_TRUE(steps(simulation));
     const double gap = height(2) - height(1);
     hits += last < before && last < gap;
     before = last;
@@ -231,16 +192,15 @@ void expect_conserved_hits(const std::string& second, const std::string& springs
 }
 
 std::string spring(const std::string& from, const std::string& to, double stiffness, double rest) {
-  return fmt::format(
-      "<spring from=\"one\" from_at=\"{}\" to=\"two\" to_at=\"{}\" stiffness=\"{}\" rest_length=\"{}\"/>", from, to,
-      stiffness, rest);
+  return fmt::format("<spring from='one' from_at='{}' to='two' to_at='{}' stiffness='{}' rest_length='{}'/>", from, to,
+                     stiffness, rest);
 }
 
 TEST(LineContact, BeamsThatHitEachOtherCrosswiseKeepEnergyAndMomenta) {
   std::string springs;
   for (const char* one : {"0 0 0", "0.6 0 0"})
     for (const char* two : {"0 0 0", "0.2 0.56 0"}) springs += spring(one, two, 300, 0.3);
-  expect_conserved_hits(rod("two", {{0.2, 0.56, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
+  expect_conserved_hits(line_of("two", {{0.2, 0.56, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
                         start("two", {0.2, -0.28, 0.0205}, {0.002, 0.001, -0.05}));
 }
 
@@ -249,7 +209,7 @@ TEST(LineContact, BeamsThatHitEachOtherAlongsideKeepEnergyAndMomenta) {
   for (const char* at : {"0", "0.6"})
     for (const double side : {-0.05, 0.05})
       springs += spring(fmt::format("{} {} 0", at, side), fmt::format("{} {} 0", at, -side), 150, 0.08);
-  expect_conserved_hits(rod("two", {{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
+  expect_conserved_hits(line_of("two", {{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
                         start("two", {0, 0, 0.0205}, {0.002, 0.001, -0.05}));
 }
 
@@ -260,18 +220,15 @@ TEST(LineContact, CrossedRodsGiveBackWhatTheyAreAskedFor) {
     for (const double angle : {90.0, 30.0}) {
       const double c = std::cos(angle * kPi / 180), s = std::sin(angle * kPi / 180);
       const Rod one{{0.2, 0, 0}, 0.01, 2e11, 7800, 2, 2}, two{{0.2 * c, 0.2 * s, 0}, 0.01, 2e11, 7800, 2, 2};
-      Simulation simulation = simulation_of(
-          rod("one", one) + rod("two", two) + joint("one", "floating") + joint("two", "floating") +
-              fmt::format("<contact first=\"one\" second=\"two\" restitution=\"{}\"/>", e),
+      Simulation simulation = weightless(
+          line_of("one", one) + line_of("two", two) + floating("one") + floating("two") +
+              contact_of("one", "two", fmt::format("restitution='{}'", e)),
           start("one", {0, 0, 0}, {0, 0, 0.05}) + start("two", {0.1 - 0.1 * c, -0.1 * s, 0.0205}, {0, 0, -0.05}), 1e-3);
       const double begin = simulation.energies().kinetic;
-      for (int i = 0; i < 60; ++i) {
-        const StepResult result = simulation.step();
-        ASSERT_TRUE(result.converged) << simulation.explain(result);
-      }
+      run(simulation, 60);
       EXPECT_GT(simulation.section(2, 0.1).pose.position.z() - simulation.section(1, 0.1).pose.position.z(), 0.02);
       EXPECT_NEAR(std::sqrt(simulation.energies().kinetic / begin), e, 0.01) << e << " at " << angle;
-      EXPECT_NEAR(account(simulation), begin, 1e-9 * begin);
+      EXPECT_NEAR(energy_account(simulation), begin, 1e-9 * begin);
     }
 }
 
@@ -279,15 +236,14 @@ TEST(LineContact, CrossedRodsGiveBackWhatTheyAreAskedFor) {
 double acceleration_of_a_rod(int axis, double slope, double friction) {
   const double down = kG * std::sin(slope);
   const Rod held{{0.6, 0, 0}, 0.01, 2e11, 7800, 6, 2}, moving{{0, 0.4, 0}, 0.01, 2e11, 7800, 4, 2};
-  Simulation simulation = simulation_of(
-      rod("left", held) + rod("right", held) + rod("rod", moving) + joint("left", "fixed", {0, -0.08, 0}) +
-          joint("right", "fixed", {0, 0.08, 0}) + joint("rod", "floating") +
-          fmt::format("<contact first=\"rod\" second=\"*\" friction=\"{}\" restitution=\"1\"/>", friction),
-      start("rod", {0.05, -0.2, 0.02}, {0, 0, 0}), 1e-3,
-      {axis == 0 ? down : 0, axis == 0 ? 0 : down, -kG * std::cos(slope)});
+  Simulation simulation =
+      simulation_of(line_of("left", held) + line_of("right", held) + line_of("rod", moving) +
+                        clamped("left", {0, -0.08, 0}) + clamped("right", {0, 0.08, 0}) + floating("rod") +
+                        contact_of("rod", "*", fmt::format("friction='{}' restitution='1'", friction)),
+                    start("rod", {0.05, -0.2, 0.02}, {0, 0, 0}), 1e-3,
+                    {axis == 0 ? down : 0, axis == 0 ? 0 : down, -kG * std::cos(slope)});
   const auto place_at = [&](double time) {
-    while (simulation.time() < time - 1e-6)
-      if (!simulation.step().converged) ADD_FAILURE() << simulation.time();
+    run_until(simulation, time);
     return simulation.section(3, 0.2).pose.position[axis];
   };
   const double first = place_at(0.1), second = place_at(0.175), third = place_at(0.25);
@@ -306,10 +262,10 @@ TEST(LineContact, CrossedRodsSlideAndRoll) {
 // cantilevers carry half of it each.
 TEST(LineContact, CrossedCantileversShareALoadInStatics) {
   const Rod along{{1, 0, 0}, 0.005, 2e11, 1e-3, 6, 2}, across{{0, 1, 0}, 0.005, 2e11, 1e-3, 6, 2};
-  Simulation simulation = simulation_of(
-      rod("upper", along) + rod("lower", across) + joint("upper", "fixed", {0, 0, 0.01}) +
-          joint("lower", "fixed", {0.98, -0.98, 0}) + "<contact first=\"upper\" second=\"lower\" stiffness=\"1e6\"/>",
-      "<load link=\"upper\" at=\"1 0 0\" force=\"0 0 -0.7\"/>", 1e-3);
+  Simulation simulation =
+      weightless(line_of("upper", along) + line_of("lower", across) + clamped("upper", {0, 0, 0.01}) +
+                     clamped("lower", {0.98, -0.98, 0}) + contact_of("upper", "lower", "stiffness='1e6'"),
+                 "<load link='upper' at='1 0 0' force='0 0 -0.7'/>", 1e-3);
   ASSERT_TRUE(simulation.solve_static(4).converged);
   const double bending = bending_stiffness(along), load = 0.7, at = 0.98;
   // Load of the lower cantilever, from equal deflections at the crossing less the contact's penetration.
@@ -336,18 +292,15 @@ TEST(LineContact, CrossedCantileversShareALoadInStatics) {
 /// the smallest distance.
 double nearest_of_itself(bool touches) {
   const Rod rope{{1, 0, 0}, 0.01, 1e7, 1000, 12, 2};
-  Simulation simulation = simulation_of(
-      rod("rope", rope) + joint("rope", "fixed") + (touches ? "<contact first=\"rope\" second=\"rope\"/>" : ""),
-      fmt::format("<load link=\"rope\" at=\"1 0 0\" moment=\"0 {:.17g} 0\" history=\"0:0 4:1 10:1\"/>",
-                  -2.4 * kPi * bending_stiffness(rope)),
-      5e-3);
+  Simulation simulation =
+      weightless(line_of("rope", rope) + clamped("rope") + (touches ? contact_of("rope", "rope") : ""),
+                 fmt::format("<load link='rope' at='1 0 0' moment='0 {:.17g} 0' history='0:0 4:1 10:1'/>",
+                             -2.4 * kPi * bending_stiffness(rope)),
+                 5e-3);
   double nearest = 1e9;
-  while (simulation.time() < 4) {
-    const StepResult result = simulation.step();
-    EXPECT_TRUE(result.converged) << simulation.explain(result);
-    if (!result.converged) return 0;
+  run_until(simulation, 4, [&] {
     nearest = std::min(nearest, nearest_of(simulation, {1, 1}, {1, 1}, kPi * rope.radius));
-  }
+  });
   return nearest;
 }
 
@@ -357,4 +310,4 @@ TEST(LineContact, RodDoesNotGoThroughItself) {
 }
 
 }  // namespace
-}  // namespace flexarm::test::touching_lines
+}  // namespace flexarm::test::touching

@@ -1,17 +1,12 @@
 // Tests contact of meshes: a body with the mesh of a box moves as the same body with a box.
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 
-#include <fmt/format.h>
-
-#include "flexarm/model/model_error.h"
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
+#include "reference/contact_scenes.h"
 #include "support/polytopes.h"
+#include "support/refusal.h"
 
-namespace flexarm::test::touching_meshes {
+namespace flexarm::test::touching {
 namespace {
 
 const Vector3 kHalf(0.05, 0.1, 0.03);
@@ -31,33 +26,26 @@ std::string box_file() {
 }
 
 std::string mesh_shape() {
-  return "<mesh filename=\"file://" + box_file() + "\" scale=\"0.001 0.001 0.001\"/>";
+  return "<mesh filename='file://" + box_file() + "' scale='0.001 0.001 0.001'/>";
 }
-std::string box_shape() {
-  return fmt::format("<box size=\"{} {} {}\"/>", 2 * kHalf.x(), 2 * kHalf.y(), 2 * kHalf.z());
+
+std::string body_with(const std::string& name, const std::string& shape) {
+  return body(name, 1, {0.004, 0.001, 0.004}, Vector3::Zero(), collision(shape)) + floating(name);
 }
 
 /// Two bodies of the given shape, which fall on each other and on a floor.
 Simulation falling(const std::string& shape) {
-  std::string text = R"(<robot name="meshes"><link name="world"/><ground name="floor"/>
-    <contact first="*" second="*" restitution="0.5" friction="0.4"/>)";
-  for (const char* name : {"low", "high"})
-    text += fmt::format(
-        R"(<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.004" iyy="0.001" izz="0.004" ixy="0" ixz="0"
-        iyz="0"/></inertial><collision><geometry>{1}</geometry></collision></link><joint name="of_{0}" type="floating">
-        <parent link="world"/><child link="{0}"/></joint>)",
-        name, shape);
-  text += R"(<simulation><integrator scheme="em" step="1e-3"/><initial joint="of_low/z" position="0.06"/>
-    <initial joint="of_high/z" position="0.15"/><initial joint="of_high/x" position="0.02"/>
-    <initial link="low" angular="0.4 0.2 0"/></simulation></robot>)";
-  const scene::ReadResult result = scene::read_scene_text(text, "meshes.urdf");
-  EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
-  return Simulation(result.scene.value());
+  return simulation_of(
+      kFloor + contact_of("*", "*", "restitution='0.5' friction='0.4'") + body_with("low", shape) +
+          body_with("high", shape),
+      "<initial joint='of_low/z' position='0.06'/><initial joint='of_high/z' position='0.15'/><initial "
+      "joint='of_high/x' position='0.02'/><initial link='low' angular='0.4 0.2 0'/>",
+      1e-3);
 }
 
 // Points and faces have a different order, so that sums differ by round-off, which grows from hit to hit.
 TEST(TouchingMeshes, OfABoxAreTheBox) {
-  Simulation box = falling(box_shape()), mesh = falling(mesh_shape());
+  Simulation box = falling("<box size='" + xyz(2 * kHalf) + "'/>"), mesh = falling(mesh_shape());
   for (int k = 0; k < 400; ++k) {
     ASSERT_TRUE(box.step().converged);
     ASSERT_TRUE(mesh.step().converged);
@@ -72,48 +60,27 @@ TEST(TouchingMeshes, OfABoxAreTheBox) {
 // Sliding follows g (sin - mu cos), with the smaller mu of both surfaces, as in Gazebo.
 TEST(TouchingMeshes, SlideByTheFrictionThatGazeboKnows) {
   const double slope = 0.5;
-  const scene::ReadResult result = scene::read_scene_text(
-      fmt::format(
-          R"(<robot name="meshes"><link name="world"/><ground name="floor"/><link name="block"><inertial><mass value="1"/>
-      <inertia ixx="0.004" iyy="0.001" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>{}</geometry>
-      </collision></link><joint name="of_block" type="floating"><parent link="world"/><child link="block"/></joint>
-      <gazebo reference="block"><mu1>0.4</mu1><mu2>0.3</mu2><kp>1e6</kp></gazebo><contact first="block" second="floor"/>
-      <simulation><gravity xyz="{} 0 {}"/><integrator scheme="em" step="1e-3"/><initial joint="of_block/z" position="0.03"/>
-      </simulation></robot>)",
-          mesh_shape(), 9.81 * std::sin(slope), -9.81 * std::cos(slope)),
-      "slope.urdf");
-  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
-  Simulation simulation(result.scene.value());
-  const auto speed_at = [&](int steps) {
-    while (simulation.time() < steps * 1e-3 - 1e-9) EXPECT_TRUE(simulation.step().converged);
+  Simulation simulation = simulation_of(
+      kFloor + body_with("block", mesh_shape()) +
+          "<gazebo reference='block'><mu1>0.4</mu1><mu2>0.3</mu2><kp>1e6</kp></gazebo>" + contact_of("block", "floor"),
+      "<initial joint='of_block/z' position='0.03'/>", 1e-3, {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)});
+  const auto speed_at = [&](double time) {
+    run_until(simulation, time);
     return simulation.momentum().x();
   };
-  const double first = speed_at(1000), second = speed_at(2000);  // after it has settled
+  const double first = speed_at(1), second = speed_at(2);  // after it has settled
   EXPECT_NEAR(second - first, 9.81 * (std::sin(slope) - 0.3 * std::cos(slope)), 1e-6);
 }
 
 TEST(TouchingMeshes, ThatAreMissingAreErrorsWhereTheyAreMeantToTouch) {
-  const auto refusal = [](const std::string& contact) -> std::string {
-    const scene::ReadResult result = scene::read_scene_text(
-        R"(<robot name="meshes"><link name="world"/><ground name="floor"/><link name="a"><inertial><mass value="1"/>
-        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>
-        <mesh filename="file:///nowhere/a.stl"/></geometry></collision></link><joint name="j" type="floating">
-        <parent link="world"/><child link="a"/></joint>)" +
-            contact + "</robot>",
-        "missing.urdf");
-    EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
-    try {
-      Simulation simulation(result.scene.value());
-    } catch (const ModelError& error) {
-      return error.what();
-    }
-    return "";
+  const auto refused = [](const std::string& contact) {
+    return refusal_of(scene_of(robot(kFloor + body_with("a", "<mesh filename='file:///nowhere/a.stl'/>") + contact)));
   };
-  EXPECT_EQ(refusal(""), "");
-  EXPECT_EQ(refusal(R"(<contact first="a" second="floor"/>)"),
-            "missing.urdf:1: <link> 'a': its <collision> has the mesh 'file:///nowhere/a.stl', but there is no file "
+  EXPECT_EQ(refused(""), "");
+  EXPECT_EQ(refused(contact_of("a", "floor")),
+            "test.urdf:1: <link> 'a': its <collision> has the mesh 'file:///nowhere/a.stl', but there is no file "
             "/nowhere/a.stl");
 }
 
 }  // namespace
-}  // namespace flexarm::test::touching_meshes
+}  // namespace flexarm::test::touching

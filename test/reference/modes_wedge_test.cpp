@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -63,17 +63,12 @@ Simulation strip(double cut, const std::string& damping = "") {
   const auto station = [](double at, double height) {
     return fmt::format(R"(<station at="{}"><rectangle width="0.02" height="{}"/></station>)", at, height);
   };
-  const scene::ReadResult result = scene::read_scene_text(
-      fmt::format(R"(<robot name="strip"><link name="world"/>
-        <link name="strip"><beam elements="16" order="4"><centerline><line to="{} 0 0"/></centerline>
-          <stations>{}{}</stations>
-          <material young="{}" poisson="0.3" density="{}"/>{}</beam></link>
-        <joint name="clamp" type="fixed"><parent link="world"/><child link="strip"/></joint>
-        <simulation><gravity xyz="0 0 0"/></simulation></robot>)",
-                  1 - cut, station(0, kTaper), station(1 - cut, cut * kTaper), kYoung, kDensity, damping),
-      "strip.urdf");
-  EXPECT_TRUE(result.scene);
-  return Simulation(*result.scene);
+  return Simulation(scene_of(
+      robot(fmt::format(R"(<link name="strip"><beam elements="16" order="4"><centerline><line to="{} 0 0"/></centerline>
+                             <stations>{}{}</stations><material young="{}" poisson="0.3" density="{}"/>{}</beam></link>)",
+                        1 - cut, station(0, kTaper), station(1 - cut, cut * kTaper), kYoung, kDensity, damping) +
+                joint("clamp", "fixed", "world", "strip"),
+            gravity({0, 0, 0}))));
 }
 
 TEST(Wedge, Frequencies) {

@@ -67,9 +67,7 @@ Simulation start(const HardCase& c, int order, double rho) {
   b.scene.integrator.rho_infinity = rho;
   b.scene.integrator.step = c.step;
   b.scene.integrator.tolerance = 1e-10;
-  SimulationOptions options;
-  options.reuse_factorisation = false;
-  Simulation simulation(b.scene, options);
+  Simulation simulation(b.scene, full_newton());
   if (c.starts_in_equilibrium) {
     EXPECT_TRUE(simulation.solve_static(10).converged);
   }

@@ -116,9 +116,7 @@ Simulation bar(const Case& c) {
   if (c.order > 0) b.scene.integrator.rho_infinity = c.rho;
   b.scene.integrator.step = kOscillatorStep;
   b.scene.integrator.tolerance = 1e-10;
-  SimulationOptions set;
-  set.reuse_factorisation = false;
-  return Simulation(b.scene, set);
+  return Simulation(b.scene, full_newton());
 }
 
 int tip_node(const Simulation& simulation) {

@@ -4,7 +4,6 @@
 #include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "reference/reference_cantilever.h"
-#include "reference/strains.h"
 #include "support/loops.h"
 
 namespace flexarm::test {
@@ -175,7 +174,9 @@ TEST(Prestrain, KeepsTheOrderOfSchemes) {
     }
     // Symmetric steps have errors of even order. With means over the parts of a step, the error of order 4 is smaller
     // than that of order 6 down to round-off.
-    if (order == 4) EXPECT_GT(observed, order - kOrderTolerance) << scheme;
+    if (order == 4) {
+      EXPECT_GT(observed, order - kOrderTolerance) << scheme;
+    }
   }
 }
 

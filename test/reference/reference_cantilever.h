@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "reference/observed_order.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {

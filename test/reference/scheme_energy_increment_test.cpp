@@ -70,9 +70,8 @@ Simulation tumbling(const std::string& scheme, Interpolation interpolation) {
   b.scene.integrator.interpolation = interpolation;
   b.scene.integrator.step = 0.05;
   b.scene.integrator.tolerance = 1e-10;
-  SimulationOptions options;
-  options.reuse_factorisation = false;  // quadratic convergence leaves only round-off
-  return Simulation(b.scene, options);
+  // quadratic convergence leaves only round-off
+  return Simulation(b.scene, full_newton());
 }
 
 struct Identity {

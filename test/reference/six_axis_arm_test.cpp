@@ -54,9 +54,7 @@ TEST_F(SixAxisArm, HoldsItsPoseUnderGravity) {
 TEST_F(SixAxisArm, RoundOffCostsNoIterations) {
   ASSERT_TRUE(read_.scene);
   for (const char* scheme : {"em", "em0", "edmc2"}) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    Simulation simulation(*read_.scene, options);
+    Simulation simulation(*read_.scene, options(scheme));
     StepCounts counts;
     for (int n = 0; n < kSecond; ++n) counts.add(simulation.step());
     EXPECT_LE(static_cast<double>(counts.iterations), 4 * kSecond) << scheme;

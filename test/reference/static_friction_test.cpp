@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "flexarm/scene/urdf_reader.h"
 #include "reference/one_coordinate_scenes.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -75,40 +73,25 @@ TEST(StaticFriction, FallsAlongItsCurve) {
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.15);
 }
 
-// A block of 2 kg that a spring of 200 N/m pulls, whose end moves with 0.1 m/s; friction of 4 N, 1.5 times as large at
-// rest. Where it rests after each slip: from an integration of the law with scipy, from event to event. (As the
+// A block of 2 kg that a spring of 200 N/m pulls, whose end moves with 0.1 m/s; friction of 4 N, 1.5 times as large
+// at rest. Where it rests after each slip: from an integration of the law with scipy, from event to event. (As the
 // Stribeck speed vanishes, a slip takes 2 (pi - atan(D w / V)) / w, D = 0.01 m, w = 10/s: 0.4712 s;
-// scripts/reference_stick_slip.py.) A step decides whether the block breaks away: up to a step late it slides on
-// farther by twice the way of the spring's end, and as much again at its stop.
+// elements/scripts/reference_stick_slip.py.) A step decides whether the block breaks away: up to a step late it
+// slides on farther by twice the way of the spring's end, and as much again at its stop.
 TEST(StaticFriction, SticksAndSlipsAsIntegratedFromEventToEvent) {
   struct Case {
     double stribeck, period, slip;
   };
   for (const Case& each : {Case{0.01, 0.7028383672, 0.4719631454}, Case{0.05, 0.7432931607, 0.4802554625}})
     for (const double step : {2e-3, 2.5e-4}) {
-      const scene::ReadResult scene = scene::read_scene_text(
-          fmt::format("<robot name=\"stick_slip\"><link name=\"world\"/>"
-                      "<joint name=\"pull\" type=\"prismatic\"><parent link=\"world\"/><child link=\"end\"/>"
-                      "<origin xyz=\"1 0 0\"/><limit lower=\"-9\" upper=\"9\" effort=\"0\" velocity=\"0\"/></joint>"
-                      "<joint name=\"rail\" type=\"prismatic\"><parent link=\"world\"/><child link=\"block\"/>"
-                      "<limit lower=\"-9\" upper=\"9\" effort=\"0\" velocity=\"0\"/><dynamics friction=\"4\"/>"
-                      "<friction law=\"coulomb\" static=\"1.5\" stribeck=\"{0}\"/></joint>"
-                      "<link name=\"end\">{1}</link><link name=\"block\">{1}</link>"
-                      "<spring from=\"block\" to=\"end\" stiffness=\"200\" rest_length=\"1\"/>"
-                      "<simulation><gravity xyz=\"0 0 0\"/><integrator scheme=\"em\" step=\"{2}\"/>"
-                      "<motion joint=\"pull\" position=\"0.1*t\"/></simulation></robot>",
-                      each.stribeck,
-                      "<inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" "
-                      "iyz=\"0\"/></inertial>",
-                      step),
-          "stick_slip.urdf");
-      ASSERT_TRUE(scene.scene.has_value());
-      Simulation simulation(*scene.scene);
-      const auto account = [&] {
-        const Energies energies = simulation.energies();
-        return energies.total() - energies.work + energies.dissipated;
-      };
-      const double begin = account();
+      Simulation simulation(scene_of(robot(
+          joint("pull", "prismatic", "world", "end", "<origin xyz='1 0 0'/>" + kFarLimits) +
+              joint("rail", "prismatic", "world", "block",
+                    kFarLimits + "<dynamics friction='4'/>" +
+                        fmt::format("<friction law='coulomb' static='1.5' stribeck='{}'/>", each.stribeck)) +
+              body("end", 2) + body("block", 2) + "<spring from='block' to='end' stiffness='200' rest_length='1'/>",
+          gravity({0, 0, 0}) + integrator("em", step) + "<motion joint='pull' position='0.1*t'/>")));
+      const double begin = energy_account(simulation);
       const int rail = 1;
       double before = 0, dissipated = 0;
       std::vector<double> starts, stops, rests;
@@ -132,7 +115,7 @@ TEST(StaticFriction, SticksAndSlipsAsIntegratedFromEventToEvent) {
         EXPECT_NEAR(stops[n] - starts[n], each.slip, 3 * step) << each.stribeck;
         EXPECT_NEAR(rests[n], (n + 1) * 0.1 * each.period, (n + 1) * 4 * 0.1 * step) << each.stribeck;
       }
-      EXPECT_NEAR(account(), begin, 1e-9);
+      EXPECT_NEAR(energy_account(simulation), begin, 1e-9);
     }
 }
 

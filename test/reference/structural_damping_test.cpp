@@ -2,46 +2,17 @@
 // stays exact. (numerical_dissipation_spectrum_test tests its roots, dynamics_order_test its order.)
 #include <cstdio>
 
-#include "flexarm/scene/urdf_reader.h"
-#include "reference/dynamics_runs.h"
-#include "simulation/inside.h"
+#include "reference/documented_arms.h"
+#include "support/runs.h"
+#include "support/scene_builder.h"
 
 namespace flexarm::test {
 namespace {
 
-/// The arm of docs/guide.md, whose motor torque jumps at 0 and at 1 s.
-scene::SceneDescription guide_arm() {
-  const scene::ReadResult result = scene::read_scene_text(R"(
-    <robot name="arm">
-      <link name="world"/>
-      <joint name="shoulder" type="revolute">
-        <parent link="world"/> <child link="boom"/> <axis xyz="0 0 1"/>
-        <limit lower="-3" upper="3" effort="10" velocity="5"/> <dynamics damping="0.01"/>
-      </joint>
-      <link name="boom">
-        <beam>
-          <centerline> <line to="2 0 0"/> </centerline>
-          <circle radius="0.008"/>
-          <material young="70e9" poisson="0.33" density="2700"/>
-          <damping stiffness_proportional="0.001"/>
-        </beam>
-      </link>
-      <joint name="grip" type="fixed"> <parent link="boom"/> <child link="payload"/> <origin xyz="2 0 0"/> </joint>
-      <link name="payload">
-        <inertial> <mass value="1"/> <inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/> </inertial>
-      </link>
-      <simulation>
-        <gravity xyz="0 0 0"/>
-        <effort joint="shoulder" history="t &lt; 1 ? 4 : -4"/>
-      </simulation>
-    </robot>)",
-                                                          "arm.urdf");
-  return *result.scene;
-}
-
-/// The scheme's velocity of the shoulder every millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000
-/// rad/s creep. Slower modes that a step of 1 ms does not resolve (1000 rad/s) decay at least with eta omega^2 / 2 =
-/// 500/s. So exp(-25) is left of the motion that the jump at 1 s has excited.
+/// The scheme's velocity of the shoulder of the guide's arm, whose motor torque jumps at 0 and at 1 s, every
+/// millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000 rad/s creep. Slower modes that a step of 1 ms
+/// does not resolve (1000 rad/s) decay at least with eta omega^2 / 2 = 500/s. So exp(-25) is left of the motion that
+/// the jump at 1 s has excited.
 std::vector<double> velocities_after_jump(const std::string& scheme, int refinement) {
   Simulation simulation(guide_arm(), options(scheme, 1e-3 / refinement));
   const int shoulder = model_of(simulation).joints[model_of(simulation).coordinates.front().joint].slave;

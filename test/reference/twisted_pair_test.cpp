@@ -1,12 +1,8 @@
 // Tests two strands that are wound around each other against the closed form of a ply.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
 #include "math/pi.h"
 #include "reference/contact_scenes.h"
 
-namespace flexarm::test::twisted_pair {
+namespace flexarm::test::touching {
 namespace {
 
 constexpr double kRadius = 0.01, kLength = 0.6, kYoung = 1e5, kPoisson = 0.3;  // soft cords [m, Pa]
@@ -52,34 +48,30 @@ Ply ply(double radius, double angle, double twist, double axial, double give) {
 // ---------------------------------------------------------------- the strands
 
 std::string strand(const std::string& name, double place, int elements) {
-  return fmt::format(
-      "<link name=\"{0}\"><beam elements=\"{1}\" order=\"2\"><centerline><line to=\"0 0 {2}\"/></centerline><circle "
-      "radius=\"{3}\"/><material young=\"{4}\" poisson=\"{5}\" density=\"1000\"/><damping mass_proportional=\"20\" "
-      "stiffness_proportional=\"0.02\"/></beam></link>"
-      "<joint name=\"of_{0}\" type=\"fixed\"><parent link=\"world\"/><child link=\"{0}\"/><origin xyz=\"{6} 0 0\"/>"
-      "</joint><loop_joint name=\"end_{0}\" type=\"fixed\"><parent link=\"{0}\"/><child link=\"head\"/>"
-      "<origin xyz=\"0 0 {2}\"/><child_origin xyz=\"{6} 0 0\"/></loop_joint>",
-      name, elements, kLength, kRadius, kYoung, kPoisson, place);
+  const std::string head = fmt::format("0 0 {}", kLength), beside = fmt::format("{} 0 0", place);
+  return round_beam(name, "<line to='" + head + "'/>", kRadius,
+                    fmt::format("<material young='{}' poisson='{}' density='1000'/><damping mass_proportional='20' "
+                                "stiffness_proportional='0.02'/>",
+                                kYoung, kPoisson),
+                    elements) +
+         joint("of_" + name, "fixed", "world", name, "<origin xyz='" + beside + "'/>") +
+         joint("end_" + name, "fixed", name, "head", "<origin xyz='" + head + "'/><child_origin xyz='" + beside + "'/>",
+               "loop_joint");
 }
 
 /// Both strands are clamped at one end. At the other end they are clamped in a head that turns by 6 rad and is pulled
 /// along the axis by twice `axial`. They start a hundredth of their radius apart, which is also the contact's
 /// penetration.
 Simulation twisted(int elements, double axial) {
-  const std::string body = touching::inertial(0.05, Vector3::Constant(1e-5));
   const double place = 1.005 * kRadius;
-  return touching::simulation_of(
-      strand("one", place, elements) + strand("two", -place, elements) +
-          fmt::format(
-              "<link name=\"slide\">{0}</link><link name=\"head\">{0}</link><joint name=\"along\" type=\"prismatic\">"
-              "<parent link=\"world\"/><child link=\"slide\"/><origin xyz=\"0 0 {1}\"/><axis xyz=\"0 0 1\"/><dynamics "
-              "damping=\"3\"/><limit effort=\"1e9\" velocity=\"1e9\" lower=\"-1\" upper=\"1\"/></joint>"
-              "<joint name=\"turn\" type=\"continuous\"><parent link=\"slide\"/><child link=\"head\"/>"
-              "<axis xyz=\"0 0 1\"/></joint><contact first=\"one\" second=\"two\" stiffness=\"{2}\" "
-              "restitution=\"1\"/>",
-              body, kLength, 0.03 * kYoung * kLength),
-      fmt::format("<motion joint=\"turn\" position=\"0:0:0 0.6:6:0\"/><load link=\"slide\" force=\"0 0 {:.17g}\"/>",
-                  2 * axial),
+  return simulation_of(
+      strand("one", place, elements) + strand("two", -place, elements) + body("slide", 0.05, Vector3::Constant(1e-5)) +
+          body("head", 0.05, Vector3::Constant(1e-5)) +
+          joint("along", "prismatic", "world", "slide",
+                fmt::format("<origin xyz='0 0 {}'/><axis xyz='0 0 1'/><dynamics damping='3'/>", kLength) + kFarLimits) +
+          joint("turn", "continuous", "slide", "head", "<axis xyz='0 0 1'/>") +
+          contact_of("one", "two", fmt::format("stiffness='{}' restitution='1'", 0.03 * kYoung * kLength)),
+      fmt::format("<motion joint='turn' position='0:0:0 0.6:6:0'/><load link='slide' force='0 0 {:.17g}'/>", 2 * axial),
       0.01, Vector3::Zero());
 }
 
@@ -142,7 +134,7 @@ struct Errors {
 Errors errors(int elements) {
   const double axial = 0.1 * kBending / (kRadius * kRadius);
   Simulation simulation = twisted(elements, axial);
-  touching::run(simulation, 1.2);
+  run_until(simulation, 1.2);
   Middle middle;
   read_helix(simulation, elements, middle);
   read_forces(simulation, elements, middle);
@@ -178,4 +170,4 @@ TEST(TwistedPair, IsTheUniformPlyOfTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace flexarm::test::twisted_pair
+}  // namespace flexarm::test::touching

@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes for tests that steps allocate nothing.
 
-#include <string>
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 
@@ -27,6 +27,23 @@ inline std::string relaxing_scene(const std::string& axis) {
       <damping> <maxwell modulus_ratio="0.4" relaxation_time="0.02"/> <maxwell modulus_ratio="0.1" relaxation_time="1"/>
       </damping> </beam> </link>
     <simulation> <gravity xyz="0 0 -9.81"/> <integrator scheme="em" step="1e-3"/> </simulation> </robot>)xml";
+}
+
+/// A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch.
+inline std::string rope_scene(double friction) {
+  return robot(
+      joint("rail", "prismatic", "world", "mass", "<origin xyz='0 0 -1'/><axis xyz='0 0 1'/>" + kFarLimits) +
+          body("mass", 2) +
+          joint("axle", "continuous", "world", "drum",
+                "<origin xyz='2 0 0'/><axis xyz='0 1 0'/><dynamics damping='1'/>") +
+          body("drum", 1) +
+          fmt::format(R"(<tendon name="rope" ea="1e4" damping="10"> <via link="mass"/> <via link="world" at="0 0 1" {}/>
+      <pulley link="world" at="1 0 1.2" axis="0 1 0" radius="0.1" side="left"/>
+      <pulley link="drum" axis="0 1 0" radius="0.2" side="left" grips="true"/> </tendon>
+    <winch name="hoist" tendon="rope"/> <sensor name="cell" kind="tendon" tendon="rope"/>
+    <tendon name="other" ea="100" rest_length="0.5"> <via link="world"/> <via link="mass"/> </tendon>)",
+                      friction > 0 ? fmt::format("friction='{}'", friction) : ""),
+      gravity({0, 0, -9.81}) + integrator("em", 1e-3) + "<motion joint='hoist' position='0.1*sin(9*t)'/>");
 }
 
 /// Lines along a rod, one of them paid out by a winch, and drag of the air.

@@ -8,12 +8,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/urdf_reader.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
-#include "support/source_path.h"
+#include "support/refusal.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -73,17 +71,14 @@ TEST(BackgroundWriter, WritesTheSameBits) {
   for (const char* path : {"config/demo_arm.urdf", "config/examples/joints.urdf", "config/examples/six_axis_arm.urdf",
                            "config/examples/sliding_arm.urdf", "config/speed/flying_spaghetti.urdf"}) {
     SCOPED_TRACE(path);
-    const scene::ReadResult read = scene::read_scene_file(source_path(path));
-    ASSERT_TRUE(read.scene);
-    expect_same_rows(*read.scene, 300);
+    expect_same_rows(scene_at(path), 300);
   }
 }
 
 TEST(BackgroundWriter, WritesTheSameBitsOfAnExplicitScheme) {
-  scene::ReadResult read = scene::read_scene_file(source_path("config/examples/rigid_double_pendulum.urdf"));
-  ASSERT_TRUE(read.scene);
-  read.scene->integrator.scheme = "rk4";
-  expect_same_rows(*read.scene, 30);
+  scene::SceneDescription scene = scene_at("config/examples/rigid_double_pendulum.urdf");
+  scene.integrator.scheme = "rk4";
+  expect_same_rows(scene, 30);
 }
 
 TEST(BackgroundWriter, WritesWhatSensorsWithNoiseMeasured) {
@@ -131,8 +126,7 @@ class Noting : public ResultWriter {
 };
 
 Simulation pendulum() {
-  const scene::ReadResult read = scene::read_scene_file(source_path("config/examples/rigid_double_pendulum.urdf"));
-  return Simulation(read.scene.value());
+  return Simulation(scene_at("config/examples/rigid_double_pendulum.urdf"));
 }
 
 TEST(BackgroundWriter, LosesNoRowOfASlowWriter) {
@@ -168,13 +162,10 @@ TEST(BackgroundWriter, TellsTheWritersError) {
       if (written.size() == 5) throw std::runtime_error("disk full");
     });
   });
-  std::string error;
-  try {
+  const auto write_on = [&] {
     for (int n = 0; n < 10000; ++n) writer.write_row(simulation);
-  } catch (const std::runtime_error& caught) {
-    error = caught.what();
-  }
-  EXPECT_EQ(error, "disk full");
+  };
+  EXPECT_EQ(refusal<std::runtime_error>(write_on), "disk full");
   EXPECT_EQ(written.size(), 5u);
   EXPECT_THROW(writer.close(), std::runtime_error);
 }

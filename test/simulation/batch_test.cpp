@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/refusal.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -72,12 +73,7 @@ TEST(Batch, ThrowsTheFirstExceptionInTheEnd) {
   };
   for (int repeat = 0; repeat < 20; ++repeat) {
     calls = 0;
-    try {
-      batch.for_each(work);
-      ADD_FAILURE() << "no exception";
-    } catch (const std::runtime_error& error) {
-      EXPECT_EQ(error.what(), std::string("2"));
-    }
+    EXPECT_EQ(refusal<std::runtime_error>([&] { batch.for_each(work); }), "2");
     EXPECT_EQ(calls, 20);
   }
 }

@@ -1,11 +1,7 @@
 #pragma once
 /// A mechanism for tests of wrenches and springs from outside.
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "flexarm/simulation/simulation.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -19,11 +15,6 @@ inline SceneBuilder body_with_beam() {
   b.joint("ball", scene::JointKind::Spherical, "world", "body");
   b.joint("weld", scene::JointKind::Fixed, "body", "beam", {1, 0, 0});
   return b;
-}
-
-inline std::size_t index_of(const Simulation& simulation, const std::string& link) {
-  const std::vector<std::string>& names = simulation.link_names();
-  return std::find(names.begin(), names.end(), link) - names.begin();
 }
 
 }  // namespace flexarm::test

@@ -2,34 +2,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/linear_model.h"
-#include "flexarm/simulation/result_columns.h"
-#include "flexarm/simulation/simulation.h"
+#include "math/pi.h"
+#include "support/refusal.h"
+#include "support/runs.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846, kMass = 2, kInertia[] = {0.02, 0.03, 0.04};
+constexpr double kMass = 2, kInertia[] = {0.02, 0.03, 0.04};
 
 /// A free body in a bushing to the world at its centre of mass.
-scene::ReadResult body_in_bushing(const std::string& bushing, const std::string& simulation) {
-  return scene::read_scene_text(fmt::format(R"(<robot name="mount"> <link name="world"/>
-  <joint name="free" type="floating"> <parent link="world"/> <child link="body"/> </joint>
-  <link name="body"> <inertial> <mass value="2"/>
-    <inertia ixx="0.02" iyy="0.03" izz="0.04" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-  {} <simulation> <gravity xyz="0 0 0"/> {} </simulation> </robot>)",
-                                            bushing, simulation),
-                                "mount.urdf");
+std::string body_in_bushing(const std::string& bushing, const std::string& entries) {
+  return robot(joint("free", "floating", "world", "body") +
+                   body("body", kMass, {kInertia[0], kInertia[1], kInertia[2]}) + bushing,
+               gravity({0, 0, 0}) + entries);
 }
 
-Simulation simulated(const std::string& bushing, const std::string& simulation, const SimulationOptions& options = {}) {
-  scene::ReadResult read = body_in_bushing(bushing, simulation);
-  EXPECT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-  return Simulation(*read.scene, options);
+Simulation simulated(const std::string& bushing, const std::string& entries, const SimulationOptions& options = {}) {
+  return Simulation(scene_of(body_in_bushing(bushing, entries)), options);
 }
 
 const std::string kDiagonal =
@@ -71,29 +63,23 @@ TEST(Bushing, YieldsByItsMatrix) {
 
 // It oscillates with a large rotation and a way at once: energy and momenta of a pair that floats.
 TEST(Bushing, KeepsEnergyAndMomenta) {
-  const std::string scene = R"(<robot name="pair"> <link name="world"/>
-    <joint name="one" type="floating"> <parent link="world"/> <child link="a"/> </joint>
-    <joint name="two" type="floating"> <parent link="world"/> <child link="b"/> <origin xyz="0.3 0 0"/> </joint>
-    <link name="a"> <inertial> <mass value="2"/> <inertia ixx="0.02" iyy="0.03" izz="0.04" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <link name="b"> <inertial> <mass value="1"/> <inertia ixx="0.02" iyy="0.03" izz="0.04" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <bushing from="a" from_at="0.1 0 0" to="b" to_at="-0.1 0.02 0" rpy="0.3 0 0" stiffness="200 300 500 4 6 9" damping="DAMPING"/>
-    <simulation> <gravity xyz="0 0 0"/> <initial link="b" linear="0.5 1 -0.4" angular="8 -6 5"/> </simulation> </robot>)";
+  const auto pair = [](double damping) {
+    return robot(joint("one", "floating", "world", "a") +
+                     joint("two", "floating", "world", "b", "<origin xyz='0.3 0 0'/>") +
+                     body("a", 2, {0.02, 0.03, 0.04}) + body("b", 1, {0.02, 0.03, 0.04}) +
+                     fmt::format("<bushing from='a' from_at='0.1 0 0' to='b' to_at='-0.1 0.02 0' rpy='0.3 0 0' "
+                                 "stiffness='200 300 500 4 6 9' damping='{0} {0} {0} 0 {0} 0'/>",
+                                 damping),
+                 gravity({0, 0, 0}) + "<initial link='b' linear='0.5 1 -0.4' angular='8 -6 5'/>");
+  };
   for (const double damping : {0.0, 0.05})
     for (const std::string scheme : {"em", "em0", "em4"}) {
-      std::string text = scene;
-      text.replace(text.find("DAMPING"), 7, fmt::format("{0} {0} {0} 0 {0} 0", damping));
-      const scene::ReadResult read = scene::read_scene_text(text, "pair.urdf");
-      ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-      SimulationOptions options;
-      options.scheme = scheme;
-      options.step = 5e-3;
-      Simulation simulation(*read.scene, options);
-      const double energy = simulation.energies().total();
+      Simulation simulation(scene_of(pair(damping)), options(scheme, 5e-3));
+      const double energy = energy_account(simulation);
       const Vector3 linear = simulation.momentum(), angular = simulation.angular_momentum();
-      for (int n = 0; n < 500; ++n) ASSERT_TRUE(simulation.step().converged) << scheme;
-      const Energies now = simulation.energies();
-      EXPECT_NEAR(now.total() + now.dissipated, energy, 1e-11 * energy) << scheme << damping;
-      EXPECT_EQ(damping > 0, now.dissipated > 1e-3 * energy) << scheme;
+      run(simulation, 500);
+      EXPECT_NEAR(energy_account(simulation), energy, 1e-11 * energy) << scheme << damping;
+      EXPECT_EQ(damping > 0, simulation.energies().dissipated > 1e-3 * energy) << scheme;
       EXPECT_LE((simulation.momentum() - linear).norm(), 1e-11 * linear.norm()) << scheme;
       EXPECT_LE((simulation.angular_momentum() - angular).norm(), 1e-11) << scheme;
     }
@@ -105,11 +91,8 @@ TEST(Bushing, UnderAllSchemes) {
   const std::string damped =
       R"(<bushing name="b" from="world" to="body" stiffness="200 300 500 4 6 9" damping="1 1 1 0.01 0.01 0.01"/>)";
   const auto end_of = [&](const std::string& scheme, double step) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    options.step = step;
-    Simulation simulation = simulated(damped, start, options);
-    while (simulation.time() < 0.5 - 1e-9) EXPECT_TRUE(simulation.step().converged);
+    Simulation simulation = simulated(damped, start, options(scheme, step));
+    run_until(simulation, 0.5);
     return std::vector<double>{simulation.position(0), simulation.position(1), simulation.position(3),
                                simulation.position(5)};
   };
@@ -125,9 +108,9 @@ TEST(Bushing, UnderAllSchemes) {
 
 TEST(Bushing, Errors) {
   const auto expect_error = [](const std::string& attributes, const std::string& expected) {
-    const scene::ReadResult read =
-        body_in_bushing(fmt::format(R"(<bushing from="world" to="body" {}/>)", attributes), "");
-    EXPECT_NE(scene::to_text(read.diagnostics).find(expected), std::string::npos) << scene::to_text(read.diagnostics);
+    const scene::ReadResult read = scene::read_scene_text(
+        body_in_bushing(fmt::format("<bushing from='world' to='body' {}/>", attributes), ""), "mount.urdf");
+    expect_contains(scene::to_text(read.diagnostics), expected);
     EXPECT_FALSE(read.scene);
   };
   expect_error("", "attribute 'stiffness' is missing");

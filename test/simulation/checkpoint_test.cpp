@@ -4,14 +4,12 @@
 #include <filesystem>
 #include <limits>
 
-#include <gtest/gtest.h>
-
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/runs.h"
 #include "support/source_path.h"
 
 namespace flexarm::test {
@@ -20,15 +18,7 @@ namespace {
 class Checkpoint : public ::testing::TestWithParam<std::string> {
  protected:
   /// Uses full Newton: kept factors belong to the run and not to the state, so they would change the last bits.
-  Simulation simulation() const {
-    SimulationOptions options;
-    options.scheme = GetParam();
-    options.reuse_factorisation = false;
-    return Simulation(everything_scene().scene, options);
-  }
-  static void run(Simulation& simulation, int steps) {
-    for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation.step().converged);
-  }
+  Simulation simulation() const { return Simulation(everything_scene().scene, full_newton(options(GetParam()))); }
   void TearDown() override { std::remove(path_.c_str()); }
   const std::string path_ = ::testing::TempDir() + "flexarm_checkpoint_test.state";
 };
@@ -71,10 +61,7 @@ TEST_P(Checkpoint, CarriesTheStepInUse) {
   run(original, 20);
   run(resumed, 20);
   EXPECT_TRUE(same_bits(state_of(original), state_of(resumed)));
-  SimulationOptions made_for_it;
-  made_for_it.scheme = GetParam();
-  made_for_it.step = original.step_size();
-  Simulation other(everything_scene().scene, made_for_it);
+  Simulation other(everything_scene().scene, options(GetParam(), original.step_size()));
   if (scheme_of(other).dissipation.inertance == scheme_of(original).dissipation.inertance) {
     EXPECT_NO_THROW(read_checkpoint(other, path_));
   } else {
@@ -118,9 +105,7 @@ TEST_P(Checkpoint, FileKeepsWhatSticks) {
   if (GetParam() == "em4") GTEST_SKIP() << "refuses friction that sticks";
   if (GetParam() == "beta1" || GetParam() == "beta2")
     GTEST_SKIP() << "fails where the axial strain rests (beam.md 3.3)";
-  SimulationOptions options;
-  options.scheme = GetParam();
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton(test::options(GetParam()));
   Simulation simulation(rubbing_scene().scene, options), resumed(rubbing_scene().scene, options);
   run(simulation, 40);
   write_checkpoint(simulation, path_);
@@ -136,9 +121,7 @@ TEST_P(Checkpoint, FileKeepsDrivesAndServos) {
   if (GetParam() == "em4") GTEST_SKIP() << "refuses samples";
   if (GetParam() == "beta1" || GetParam() == "beta2")
     GTEST_SKIP() << "fails where the axial strain rests (beam.md 3.3)";
-  SimulationOptions options;
-  options.scheme = GetParam();
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton(test::options(GetParam()));
   Simulation simulation(driven_scene().scene, options), resumed(driven_scene().scene, options);
   simulation.command_set_point(*simulation.find_coordinate("prismatic"), 0.02);
   run(simulation, 41);
@@ -152,8 +135,6 @@ TEST_P(Checkpoint, FileKeepsDrivesAndServos) {
 
 // With kept factors (the default), the steps agree only to the error of Newton's method, not to the last bit.
 TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
-  SimulationOptions options;
-  options.scheme = GetParam();
   SceneBuilder builder = everything_scene();
   // Near rest, the Newmark family oscillates on the steep law of friction, which amplifies differences of round-off. A
   // composed scheme does so in its backward sub-step, where friction feeds energy in. So there is no friction for
@@ -162,7 +143,7 @@ TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
   if (!scheme.is_incremental() || scheme.is_composition)
     for (auto* joints : {&builder.scene.joints, &builder.scene.loop_joints})
       for (scene::JointDescription& joint : *joints) joint.friction = 0, joint.friction_law = {};
-  Simulation simulation(builder.scene, options);
+  Simulation simulation(builder.scene, options(GetParam()));
   run(simulation, 40);
   const Snapshot snapshot = simulation.snapshot();
   run(simulation, 40);
@@ -185,9 +166,7 @@ TEST_P(Checkpoint, OfAnotherModelOrSchemeIsRefused) {
   EXPECT_THROW(other.restore(simulation.snapshot()), std::invalid_argument);
   EXPECT_TRUE(other.step().converged) << "unharmed";
 
-  SimulationOptions options;
-  options.scheme = GetParam() == "m1" ? "em" : "m1";
-  Simulation another_scheme(everything_scene().scene, options);
+  Simulation another_scheme(everything_scene().scene, options(GetParam() == "m1" ? "em" : "m1"));
   EXPECT_THROW(read_checkpoint(another_scheme, path_), std::runtime_error);
 }
 
@@ -207,8 +186,7 @@ std::vector<std::string> scene_files() {
 // Two simulations with the same state must make the same next steps, whatever each of them did before.
 TEST(StateAlone, LeadsToTheNextStepsInEveryScene) {
   constexpr int kStretches = 25, kSteps = 25;
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   for (const std::string& file : scene_files()) {
     const scene::SceneDescription scene = scene::read_scene_file(file).scene.value();
     Simulation runs_on(scene, options), restored(scene, options);

@@ -11,12 +11,6 @@ namespace {
 constexpr double kStartAngle = 0.2;  // rad
 const BoomParts kMassive{2, 1.5};
 
-std::size_t coordinate_index(const Simulation& simulation, const char* coordinate) {
-  return simulation.find_coordinate(coordinate).value();
-}
-double coordinate_at(const Simulation& simulation, const char* coordinate) {
-  return simulation.position(coordinate_index(simulation, coordinate));
-}
 std::string motion_of(const std::string& length) {
   return "<motion joint='lift' position='" + length + "'/>";
 }
@@ -33,13 +27,13 @@ TEST(Cylinder, HoldsTheBoomWithTheForceOfStatics) {
       const BoomOnParts boom{parts};
       Simulation held(boom_scene(angle, "", motion_of(digits_of(BoomOnParts::length(angle))), parts));
       for (int n = 0; n < 3; ++n) ASSERT_TRUE(held.step().converged);
-      EXPECT_NEAR(coordinate_at(held, "hinge"), angle, 1e-12);
+      EXPECT_NEAR(position_of(held, "hinge"), angle, 1e-12);
       const double force = boom.force(angle, 0, 0);
-      EXPECT_NEAR(held.effort(coordinate_index(held, "lift")), force, 1e-8 * force) << angle;
+      EXPECT_NEAR(held.effort(*held.find_coordinate("lift")), force, 1e-8 * force) << angle;
 
       Simulation pushed(boom_scene(angle, "", "<effort joint='lift' history='" + digits_of(force) + "'/>", parts));
       ASSERT_TRUE(pushed.solve_static(1, Equilibrium::UnderTheLoads).converged);
-      EXPECT_NEAR(coordinate_at(pushed, "hinge"), angle, 1e-9);
+      EXPECT_NEAR(position_of(pushed, "hinge"), angle, 1e-9);
     }
   const double weight = 9.81 * 10 * 0.5;  // for the boom alone: the triangle by hand
   EXPECT_NEAR(BoomOnParts().force(0, 0, 0), weight / 0.3, 1e-9);
@@ -55,15 +49,13 @@ TEST(Cylinder, PushesTheBoomAsTheDifferentialEquation) {
     });
     std::array<double, 2> errors;
     for (int k = 0; k < 2; ++k) {
-      SimulationOptions options;
-      options.step = k == 0 ? 4e-3 : 2e-3;
       Simulation simulation(
           boom_scene(kStartAngle, "<dynamics damping='150'/><spring stiffness='900' rest='" + digits_of(rest) + "'/>",
                      "<effort joint='lift' history='200+60*sin(7*t)'/>", parts),
-          options);
-      while (simulation.time() < end - 1e-9) ASSERT_TRUE(simulation.step().converged);
-      const double angle = coordinate_at(simulation, "hinge");
-      EXPECT_NEAR(coordinate_at(simulation, "lift"), BoomOnParts::length(angle), 1e-9);
+          options("em", k == 0 ? 4e-3 : 2e-3));
+      run_until(simulation, end);
+      const double angle = position_of(simulation, "hinge");
+      EXPECT_NEAR(position_of(simulation, "lift"), BoomOnParts::length(angle), 1e-9);
       errors[k] = std::abs(angle - exact[0]);
     }
     EXPECT_GT(std::abs(exact[0] - kStartAngle), 0.1);
@@ -79,24 +71,21 @@ TEST(Cylinder, DrivesTheBoomByItsLength) {
     const double start = BoomOnParts::length(kStartAngle), swing = 0.05, omega = 5;
     std::array<double, 2> errors{};
     for (int k = 0; k < 2; ++k) {
-      SimulationOptions options;
-      options.step = k == 0 ? 4e-3 : 2e-3;
       Simulation simulation(
           boom_scene(kStartAngle, "", motion_of(fmt::format("{:.17g}+{}*(1-cos({}*t))", start, swing, omega)), parts),
-          options);
-      while (simulation.time() < 1 - 1e-9) {
-        ASSERT_TRUE(simulation.step().converged);
+          options("em", k == 0 ? 4e-3 : 2e-3));
+      run_until(simulation, 1, [&] {
         const double t = simulation.time(), length = start + swing * (1 - std::cos(omega * t));
-        ASSERT_NEAR(coordinate_at(simulation, "lift"), length, 1e-12);
-        ASSERT_NEAR(coordinate_at(simulation, "hinge"), BoomOnParts::angle_at(length), 1e-8);
-        if (t < 0.1) continue;
+        ASSERT_NEAR(position_of(simulation, "lift"), length, 1e-12);
+        ASSERT_NEAR(position_of(simulation, "hinge"), BoomOnParts::angle_at(length), 1e-8);
+        if (t < 0.1) return;
         const auto angle = [&](double time) {
           return BoomOnParts::angle_at(start + swing * (1 - std::cos(omega * time)));
         };
         const auto rate = [&](double time) { return BoomOnParts::derivative(angle, time); };
         const double force = boom.force(angle(t), rate(t), BoomOnParts::derivative(rate, t));
-        errors[k] = std::max(errors[k], std::abs(simulation.effort(coordinate_index(simulation, "lift")) - force));
-      }
+        errors[k] = std::max(errors[k], std::abs(simulation.effort(*simulation.find_coordinate("lift")) - force));
+      });
     }
     EXPECT_LT(errors[1], 0.05);  // of about 200 N
     EXPECT_NEAR(errors[0] / errors[1], 4, 0.8);
@@ -117,7 +106,7 @@ TEST(Cylinder, SwingsAtTheFrequencyOfOneDegreeOfFreedom) {
     Simulation simulation(
         boom_scene(kStartAngle, fmt::format("<spring stiffness='{}' rest='{:.17g}'/>", stiffness, rest), "", parts));
     ASSERT_TRUE(simulation.solve_static(1).converged);
-    EXPECT_NEAR(coordinate_at(simulation, "hinge"), kStartAngle, 1e-9);
+    EXPECT_NEAR(position_of(simulation, "hinge"), kStartAngle, 1e-9);
     const std::vector<Mode> modes = simulation.natural_modes(3);
     ASSERT_EQ(modes.size(), 1u);
     EXPECT_NEAR(2 * kPi * modes[0].frequency, omega, 1e-6 * omega);
@@ -160,8 +149,8 @@ TEST(Cylinder, IsMovedByFlow) {
                                                  "<servo mode='velocity' kp='1e6' ki='1e8' set_point='{}'/>",
                                                  stiffness, limit, speed),
                                      ""));
-    while (simulation.time() < 2 - 1e-9) EXPECT_TRUE(simulation.step().converged);
-    return coordinate_at(simulation, "lift");
+    run_until(simulation, 2);
+    return position_of(simulation, "lift");
   };
   const double start = BoomOnParts::length(kStartAngle);
   // The weight compresses the oil.
@@ -173,10 +162,10 @@ TEST(Cylinder, IsMovedByFlow) {
 TEST(Cylinder, StartsWithVelocitiesThatFit) {
   const double lever = BoomOnParts::lever(kStartAngle);
   const Simulation turned(boom_scene(0, "", "<initial joint='hinge' position='0.2' velocity='0.5'/>"));
-  EXPECT_NEAR(turned.velocity(coordinate_index(turned, "lift")), 0.5 * lever, 1e-9);
+  EXPECT_NEAR(turned.velocity(*turned.find_coordinate("lift")), 0.5 * lever, 1e-9);
   const Simulation pushed(boom_scene(kStartAngle, "", "<initial joint='lift' velocity='0.1'/>"));
-  EXPECT_NEAR(pushed.velocity(coordinate_index(pushed, "hinge")), 0.1 / lever, 1e-9);
-  EXPECT_NEAR(coordinate_at(pushed, "lift"), BoomOnParts::length(kStartAngle), 1e-12);
+  EXPECT_NEAR(pushed.velocity(*pushed.find_coordinate("hinge")), 0.1 / lever, 1e-9);
+  EXPECT_NEAR(position_of(pushed, "lift"), BoomOnParts::length(kStartAngle), 1e-12);
 }
 
 // Stops know the inertia that moves behind the cylinder, with and without masses of its own.
@@ -187,7 +176,7 @@ TEST(Cylinder, BouncesFromItsStops) {
                                                "<initial joint='lift' velocity='1'/>", parts);
     scene.gravity.setZero();
     Simulation simulation(scene);
-    const std::size_t lift = coordinate_index(simulation, "lift");
+    const std::size_t lift = *simulation.find_coordinate("lift");
     double deepest = 0, before = 0;
     while (simulation.time() < 0.2) {
       if (simulation.position(lift) < upper && simulation.velocity(lift) > 0) before = simulation.velocity(lift);

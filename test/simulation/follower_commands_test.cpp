@@ -1,40 +1,30 @@
 // Tests joints that mimic others: at which position a mimic of a fixed joint is held, and which error a command to a
 // mimic gives.
 #include <cmath>
-#include <functional>
-#include <stdexcept>
-
-#include <gtest/gtest.h>
 
 #include "flexarm/simulation/command_refusal.h"
-#include "flexarm/simulation/simulation.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 #include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
 
 /// Two fingers on hinges about y. The right one mimics the left one with the offset 0.3.
-Simulation gripper(const std::string& type, const std::string& more = "") {
-  const std::string inertial =
-      R"(<inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-2" iyz="0" izz="1e-2"/></inertial>)";
+Simulation gripper(const std::string& type, const std::string& more = "", const std::string& entries = "") {
+  const auto finger = [](const std::string& name) { return body(name, 1, {1e-3, 1e-2, 1e-2}, {0.1, 0, 0}); };
+  const std::string across = "<axis xyz='0 1 0'/>";
   const std::string text =
-      R"(<robot name="r"><link name="world"/>
-  <joint name="left" type=")" +
-      type + R"("><parent link="world"/><child link="lf"/><axis xyz="0 1 0"/></joint> <link name="lf">)" + inertial +
-      R"(</link>
-  <joint name="right" type="continuous"><parent link="world"/><child link="rf"/><axis xyz="0 1 0"/>
-    <mimic joint="left" offset="0.3"/></joint> <link name="rf">)" +
-      inertial + "</link>" + more + "</robot>";
-  return Simulation(scene_of(text));
+      robot(joint("left", type, "world", "lf", across) + finger("lf") +
+                joint("right", "continuous", "world", "rf", across + "<mimic joint='left' offset='0.3'/>") +
+                finger("rf") + more,
+            entries);
+  return Simulation(type == "fixed" ? scene_warned_of(text) : scene_of(text));
 }
 
-std::string refused(const std::function<void()>& command) {
-  try {
-    command();
-    return "";
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
+template <class Command>
+std::string refused(const Command& command) {
+  return refusal<std::invalid_argument>(command);
 }
 
 }  // namespace
@@ -43,7 +33,7 @@ TEST(FollowerOfAFixedJoint, IsHeldAtItsOffset) {
   Simulation simulation = gripper("fixed");
   EXPECT_EQ(simulation.degrees_of_freedom(), 0);
   const std::size_t right = *simulation.find_coordinate("right");
-  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 10);
   EXPECT_EQ(simulation.position(right), 0.3);
   EXPECT_EQ(simulation.velocity(right), 0);
   // The effort against gravity is m g times the horizontal distance of the centre of mass. A positive rotation about y
@@ -53,11 +43,10 @@ TEST(FollowerOfAFixedJoint, IsHeldAtItsOffset) {
 
 // A third joint mimics the mimic of the fixed joint. It is held, too.
 TEST(FollowerOfAFixedJoint, MayLeadOthers) {
-  Simulation simulation =
-      gripper("fixed",
-              R"(<joint name="third" type="continuous"><parent link="rf"/><child link="tf"/><axis xyz="0 1 0"/>
-           <mimic joint="right" multiplier="-2" offset="1"/></joint>
-         <link name="tf"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)");
+  Simulation simulation = gripper(
+      "fixed",
+      joint("third", "continuous", "rf", "tf", "<axis xyz='0 1 0'/><mimic joint='right' multiplier='-2' offset='1'/>") +
+          body("tf", 1));
   ASSERT_TRUE(simulation.step().converged);
   EXPECT_EQ(simulation.position(*simulation.find_coordinate("right")), 0.3);
   EXPECT_EQ(simulation.position(*simulation.find_coordinate("third")), 0.4);
@@ -93,7 +82,7 @@ TEST(Commands, ToUnknownJointsNameTheKnownOnesTheNearestFirst) {
 }
 
 TEST(FollowerCommands, ToPrescribedJointsSaySo) {
-  Simulation simulation = gripper("continuous", R"(<simulation><motion joint="left" position="t"/></simulation>)");
+  Simulation simulation = gripper("continuous", "", "<motion joint='left' position='t'/>");
   const std::size_t left = *simulation.find_coordinate("left");
   EXPECT_EQ(refused([&] { simulation.command_effort(left, 1); }), "the motion of 'left' is prescribed");
 }

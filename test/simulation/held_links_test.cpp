@@ -1,13 +1,12 @@
 // Tests joints with constant motions ("held" joints): they cost no more than fixed joints, because the links they carry
 // become part of the master's body. The effort that drives them is still known.
-#include <gtest/gtest.h>
 
 #include "flexarm/scene/point_spring.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/linear_model.h"
 #include "integrators/step_plane.h"
 #include "math/pi.h"
-#include "simulation/inside.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -366,8 +365,7 @@ TEST(HeldLinks, StayInThePlaneOfMotion) {
 // The link on which a wrench acts is part of a checkpoint.
 TEST(HeldLinks, AreHeldTheSameAfterACheckpoint) {
   const SceneBuilder b = spatial_arm(Kept::Held);
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   Simulation simulation(b.scene, options), resumed(b.scene, options);
   AppliedWrench wrench;
   wrench.link = 5;

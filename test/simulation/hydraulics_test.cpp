@@ -1,12 +1,11 @@
-// Tests hydraulic cylinders in simulations: closed forms, independent solutions (scripts/reference_oil.py, by solve_ivp
-// of scipy with tolerances of 1e-13), and the account of energies.
+// Tests hydraulic cylinders in simulations: closed forms, independent solutions (elements/scripts/reference_oil.py, by
+// solve_ivp of scipy with tolerances of 1e-13), and the account of energies.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "flexarm/model/model_error.h"
-#include "flexarm/simulation/result_columns.h"
 #include "math/pi.h"
 #include "support/boom.h"
 #include "support/source_path.h"
@@ -26,47 +25,20 @@ struct Ram {
     return kDead + area(chamber) * (chamber == 0 ? length - kLower : kUpper - length);
   }
   scene::SceneDescription scene() const {
-    const scene::ReadResult read =
-        scene::read_scene_text(fmt::format(R"(<robot name="press"> <link name="world"/>
-          <joint name="slide" type="prismatic"> <parent link="world"/> <child link="mass"/> <axis xyz="{}"/>
-            <limit lower="-9" upper="9" effort="0" velocity="0"/> </joint>
-          <link name="mass"> <inertial> <mass value="{}"/>
-            <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-          <cylinder name="ram" from="world" to="mass"> <limit lower="{}" upper="{}"/>
-            <hydraulics bore="{}" rod="{}" dead_volume="{}" {}>{}</hydraulics> </cylinder>
-          <simulation> <integrator step="1e-3" tolerance="1e-12"/>
-            <initial joint="slide" position="{}" velocity="{}"/> {} </simulation> </robot>)",
-                                           axis, kMass, kLower, kUpper, kBore, kRod, kDead, oil, pump, kStart, speed,
-                                           axis == "1 0 0" ? "<gravity xyz=\"0 0 0\"/>" + simulation : simulation),
-                               "press.urdf");
-    for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
-    return read.scene.value();
+    return scene_of(
+        robot(rail("slide", "mass", axis) + body("mass", kMass) +
+                  fmt::format("<cylinder name='ram' from='world' to='mass'> <limit lower='{}' upper='{}'/> <hydraulics "
+                              "bore='{}' rod='{}' dead_volume='{}' {}>{}</hydraulics> </cylinder>",
+                              kLower, kUpper, kBore, kRod, kDead, oil, pump),
+              "<integrator step='1e-3' tolerance='1e-12'/>" +
+                  fmt::format("<initial joint='slide' position='{}' velocity='{}'/>", kStart, speed) +
+                  (axis == "1 0 0" ? gravity({0, 0, 0}) : "") + simulation));
   }
   Simulation at(double step, const std::string& scheme = "em") const {
-    SimulationOptions options;
-    options.step = step;
-    options.scheme = scheme;
-    options.reuse_factorisation = false;  // kept factors belong to the run: they change last digits
-    return Simulation(scene(), options);
+    // Kept factors belong to the run: they change last digits.
+    return Simulation(scene(), full_newton(options(scheme, step)));
   }
 };
-
-void advance_to(Simulation& simulation, double end) {
-  while (simulation.time() < end - 1e-9) ASSERT_TRUE(simulation.step().converged) << simulation.time();
-}
-
-double position_of(const Simulation& simulation, const std::string& coordinate) {
-  return simulation.position(simulation.find_coordinate(coordinate).value());
-}
-
-double oil_column(const Simulation& simulation, const std::string& name) {
-  return ResultColumns(simulation, ResultColumns::Solver::Without, {name}).row(simulation, {}).back();
-}
-
-double oil_imbalance(const Simulation& simulation, double start) {
-  const Energies now = simulation.energies();
-  return now.total() + now.dissipated - now.work - start;
-}
 
 /// Angular frequency of the mass while nothing flows. `bulk`, `pressure`: of the piston's side at the start.
 double ram_frequency(double bulk, double pressure) {
@@ -98,14 +70,14 @@ TEST(Hydraulics, HaveTheFrequencyOfTheirOil) {
   std::array<double, 2> errors;
   for (int k = 0; k < 2; ++k) {
     Simulation swings = ram.at(k == 0 ? 1e-4 : 5e-5);
-    advance_to(swings, end);
+    run_until(swings, end);
     errors[k] = std::abs(position_of(swings, "ram") - Ram::kStart - amplitude * std::sin(omega * end));
   }
   EXPECT_LT(errors[1], 0.02 * amplitude);
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.2);
 }
 
-// Large swings, voids, voids that are filled, and relief valves, against scripts/reference_oil.py.
+// Large swings, voids, voids that are filled, and relief valves, against reference_oil.py.
 TEST(Hydraulics, MoveAsTheDifferentialEquations) {
   struct Case {
     const char *name, *oil, *simulation;
@@ -133,15 +105,15 @@ TEST(Hydraulics, MoveAsTheDifferentialEquations) {
       std::array<double, 3> errors;
       for (int k = 0; k < 3; ++k) {
         Simulation simulation = ram.at(2e-4 / (1 << k), scheme);
-        advance_to(simulation, 0.5);
+        run_until(simulation, 0.5);
         errors[k] = std::abs(position_of(simulation, "ram") - tested.length);
         if (k < 2) continue;
         // Errors of pressures and of the velocity go with those of the length, by stiffness and frequency.
         const double bulk = tested.name == std::string("pumped") ? 1e9 : 2e7, per_length = 1e2 * bulk;
         EXPECT_NEAR(simulation.velocity(0), tested.velocity, 500 * errors[k]) << tested.name << scheme;
-        EXPECT_NEAR(oil_column(simulation, "cylinder/ram/pressure_1"), tested.pressure_1, per_length * errors[k])
+        EXPECT_NEAR(column(simulation, "cylinder/ram/pressure_1"), tested.pressure_1, per_length * errors[k])
             << tested.name << scheme;
-        EXPECT_NEAR(oil_column(simulation, "cylinder/ram/pressure_2"), tested.pressure_2, per_length * errors[k])
+        EXPECT_NEAR(column(simulation, "cylinder/ram/pressure_2"), tested.pressure_2, per_length * errors[k])
             << tested.name << scheme;
       }
       EXPECT_LT(errors[2], 4e-6) << tested.name << scheme;
@@ -159,7 +131,7 @@ TEST(Hydraulics, HaveTheOrderOfTheScheme) {
   std::array<double, 2> errors;
   for (int k = 0; k < 2; ++k) {
     Simulation simulation = ram.at(k == 0 ? 1e-3 : 5e-4, "em4");
-    advance_to(simulation, 0.5);
+    run_until(simulation, 0.5);
     errors[k] = std::abs(position_of(simulation, "ram") - 0.678838489651455);
   }
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.2);
@@ -176,24 +148,23 @@ TEST(Hydraulics, MoveThePistonAtTheIdealSpeed) {
   std::array<double, 2> lengths;
   for (int k = 0; k < 2; ++k) {
     Simulation simulation = (k == 0 ? by_flow : by_pump).at(1e-4);
-    const double start = simulation.energies().total(), swing = speed / ram_frequency(1.4e9, 2e6);
-    while (simulation.time() < end - 1e-9) {
-      ASSERT_TRUE(simulation.step().converged);
+    const double start = energy_account(simulation), swing = speed / ram_frequency(1.4e9, 2e6);
+    run_until(simulation, end, [&] {
       // New oil is compressed by pressure / bulk modulus, and volumes that change by 12 % change the swing by less.
       const double way = speed * simulation.time(), compressed = 2e6 / 1.4e9 * way;
       ASSERT_NEAR(position_of(simulation, "ram"), 0.6 + way, 1.12 * swing + compressed);
-    }
+    });
     lengths[k] = position_of(simulation, "ram");
     // Velocities follow from differences of positions: epsilon |r| / step in each of n steps, times m v sqrt(n), of
     // which three times are not exceeded.
-    EXPECT_LT(std::abs(oil_imbalance(simulation, start)), 3 * 2.2e-16 * 0.6 / 1e-4 * Ram::kMass * 2 * speed * 71);
+    EXPECT_NEAR(energy_account(simulation), start, 3 * 2.2e-16 * 0.6 / 1e-4 * Ram::kMass * 2 * speed * 71);
     EXPECT_NE(simulation.energies().work, 0);
     if (k == 0) continue;
     EXPECT_NEAR(position_of(simulation, "pump"), 0.6 + speed * end, 1e-12);
     // The pump's effort is p1 A1 - p2 A2, with what is stored in the oil less by p / (2 beta).
-    const double force = oil_column(simulation, "cylinder/ram/pressure_1") * Ram::area(0) -
-                         oil_column(simulation, "cylinder/ram/pressure_2") * Ram::area(1);
-    EXPECT_NEAR(oil_column(simulation, "joint/pump/effort"), force, 2e-2 * Ram::kMass * speed * speed / swing);
+    const double force = column(simulation, "cylinder/ram/pressure_1") * Ram::area(0) -
+                         column(simulation, "cylinder/ram/pressure_2") * Ram::area(1);
+    EXPECT_NEAR(column(simulation, "joint/pump/effort"), force, 2e-2 * Ram::kMass * speed * speed / swing);
   }
   EXPECT_NEAR(lengths[0], lengths[1], 1e-12);
 }
@@ -223,10 +194,9 @@ TEST(Hydraulics, CarryABoomInEquilibrium) {
   EXPECT_NEAR(position_of(boom, "lift"), least, 1e-9);
   EXPECT_GT(std::abs(least - start), 5e-5);
   for (int i = 0; i < 2; ++i)
-    EXPECT_NEAR(oil_column(boom, fmt::format("cylinder/lift/pressure_{}", i + 1)), pressure(i, least),
-                2e-9 * bulk / 0.1);
+    EXPECT_NEAR(column(boom, fmt::format("cylinder/lift/pressure_{}", i + 1)), pressure(i, least), 2e-9 * bulk / 0.1);
   const double before = position_of(boom, "lift");
-  for (int n = 0; n < 100; ++n) ASSERT_TRUE(boom.step().converged);
+  run(boom, 100);
   EXPECT_NEAR(position_of(boom, "lift"), before, 1e-9);
 }
 
@@ -238,20 +208,19 @@ TEST(Hydraulics, LetSinkWhatIsTooHeavy) {
   const double relief = 4e4;  // 201 N of 491 N
   ram.oil = "bulk_modulus='1e9' pressure='1e4' relief_pressure='4e4'";
   Simulation simulation = ram.at(1e-3);
-  const double start = simulation.energies().total(), acceleration = relief * Ram::area(0) / Ram::kMass - 9.81;
-  advance_to(simulation, 0.05);
+  const double start = energy_account(simulation), acceleration = relief * Ram::area(0) / Ram::kMass - 9.81;
+  run_until(simulation, 0.05);
   const double velocity = simulation.velocity(0), position = position_of(simulation, "ram");
-  for (int n = 0; n < 150; ++n) {
-    ASSERT_TRUE(simulation.step().converged);
-    ASSERT_NEAR(oil_column(simulation, "cylinder/ram/pressure_1"), relief, 1e-6);  // round-off of 1e9 Pa
-    ASSERT_EQ(oil_column(simulation, "cylinder/ram/pressure_2"), 0);
-  }
+  run(simulation, 150, [&] {
+    ASSERT_NEAR(column(simulation, "cylinder/ram/pressure_1"), relief, 1e-6);  // round-off of 1e9 Pa
+    ASSERT_EQ(column(simulation, "cylinder/ram/pressure_2"), 0);
+  });
   // The mean pressure of a step is that times 1 + (du / u)^2 / 4, 1e-6 at 2 m/s.
   const double time = simulation.time() - 0.05;
   EXPECT_NEAR(position_of(simulation, "ram"), position + velocity * time + 0.5 * acceleration * time * time, 1e-7);
   EXPECT_GT(simulation.energies().dissipated,
             0.9 * relief * Ram::area(0) * (Ram::kStart - position_of(simulation, "ram")));
-  EXPECT_LT(std::abs(oil_imbalance(simulation, start)), 1e-11 * std::abs(start));
+  EXPECT_NEAR(energy_account(simulation), start, 1e-11 * std::abs(start));
 }
 
 // A boom that a pump moves to and fro, so fast that valves open and sides become void; the same without valves.
@@ -264,22 +233,21 @@ TEST(Hydraulics, KeepTheAccountOfEnergies) {
     Simulation boom(boom_scene(0.2, oil,
                                fmt::format("<motion joint='pump' position='{:.17g}+0.02*sin(40*t)-0.8*t*exp(-40*t)'/>",
                                            BoomOnParts::length(0.2))));
-    const double start = boom.energies().total();
+    const double start = energy_account(boom);
     int relieved = 0, voids = 0;
     double most = 0;
     Energies last = boom.energies();
-    for (int n = 0; n < 10000; ++n) {
-      ASSERT_TRUE(boom.step().converged) << n;
+    run(boom, 10000, [&] {
       const Energies now = boom.energies();
       relieved += now.dissipated > last.dissipated ? 1 : 0;
       most = std::max(most, now.kinetic + now.strain);
       last = now;
       for (const char* const side : {"cylinder/lift/pressure_1", "cylinder/lift/pressure_2"})
-        voids += oil_column(boom, side) == 0 ? 1 : 0;
-    }
+        voids += column(boom, side) == 0 ? 1 : 0;
+    });
     EXPECT_GT(voids, 100);
     EXPECT_EQ(relieved > 100, has_valves);
-    EXPECT_LT(std::abs(oil_imbalance(boom, start)), 1e-11 * (most + last.dissipated));
+    EXPECT_NEAR(energy_account(boom), start, 1e-11 * (most + last.dissipated));
   }
 }
 
@@ -307,16 +275,16 @@ TEST(Hydraulics, AreMovedByAServo) {
       "</pump>";
   ram.simulation = "<load link='mass' force='-500 0 0'/>";
   Simulation simulation = ram.at(5e-4);
-  const double start = simulation.energies().total();
-  advance_to(simulation, 1);
-  EXPECT_LT(std::abs(oil_imbalance(simulation, start)), 1e-9);
+  const double start = energy_account(simulation);
+  run_until(simulation, 1);
+  EXPECT_NEAR(energy_account(simulation), start, 1e-9);
   const double speed = (position_of(simulation, "ram") - 0.6) / 1;
   EXPECT_NEAR(speed, 0.2, 0.01);
-  EXPECT_NEAR(oil_column(simulation, "joint/pump/velocity"), 0.2, 1e-2);
+  EXPECT_NEAR(column(simulation, "joint/pump/velocity"), 0.2, 1e-2);
   simulation.command_set_point(simulation.find_coordinate("pump").value(), 0);
-  advance_to(simulation, 2);
-  EXPECT_NEAR(oil_column(simulation, "joint/pump/velocity"), 0, 1e-2);
-  EXPECT_NEAR(oil_column(simulation, "joint/pump/effort"), 500, 50);
+  run_until(simulation, 2);
+  EXPECT_NEAR(column(simulation, "joint/pump/velocity"), 0, 1e-2);
+  EXPECT_NEAR(column(simulation, "joint/pump/effort"), 500, 50);
 }
 
 // The example of docs/scene/cylinders.md: what the page says that it does.
@@ -325,17 +293,14 @@ TEST(Hydraulics, LiftTheBoomOfTheDocumentation) {
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   const std::size_t begin = page.find("<robot name=\"lift\">"), end = page.find("</robot>", begin);
   ASSERT_NE(end, std::string::npos);
-  const scene::ReadResult read = scene::read_scene_text(page.substr(begin, end + 8 - begin), "lift.urdf");
-  ASSERT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-  EXPECT_TRUE(read.diagnostics.empty()) << scene::to_text(read.diagnostics);
-  Simulation lift(*read.scene);
+  Simulation lift(scene_of(page.substr(begin, end + 8 - begin)));
   EXPECT_NEAR(position_of(lift, "ram"), 1, 1e-3);
-  advance_to(lift, 3);
+  run_until(lift, 3);
   EXPECT_NEAR(position_of(lift, "ram"), 1.1, 1e-3);
   EXPECT_NEAR(position_of(lift, "ram_pump"), 1.1, 1e-3);
   const double bore = 0.25 * kPi * 0.08 * 0.08, rod = 0.25 * kPi * 0.045 * 0.045;
   const double force =
-      oil_column(lift, "cylinder/ram/pressure_1") * bore - oil_column(lift, "cylinder/ram/pressure_2") * (bore - rod);
+      column(lift, "cylinder/ram/pressure_1") * bore - column(lift, "cylinder/ram/pressure_2") * (bore - rod);
   const double angle = position_of(lift, "hinge"), lever = 1.2 * std::sin(angle + std::atan2(0.8, 0.6)) / 1.1;
   EXPECT_NEAR(force, 400 * 9.81 * 1.5 * std::cos(angle) / lever, 1e-3 * force);  // of lengths
 }
@@ -345,14 +310,14 @@ TEST(Hydraulics, GoIntoCheckpoints) {
   ram.oil = "bulk_modulus='2e7' pressure='1e6' relief_pressure='3e6'";
   ram.simulation = "<load link='mass' force='1.1e4 0 0' history='sin(40*t)'/>";
   Simulation one = ram.at(1e-3), other = ram.at(1e-3);
-  advance_to(one, 0.2);
+  run_until(one, 0.2);
   other.restore(one.snapshot());
-  advance_to(one, 0.4), advance_to(other, 0.4);
-  const char* const column = "cylinder/ram/pressure_1";
+  run_until(one, 0.4), run_until(other, 0.4);
+  const char* const pressure = "cylinder/ram/pressure_1";
   EXPECT_EQ(position_of(one, "ram"), position_of(other, "ram"));
-  EXPECT_EQ(oil_column(one, column), oil_column(other, column));
+  EXPECT_EQ(column(one, pressure), column(other, pressure));
   other.reset();
-  EXPECT_NEAR(oil_column(other, column), 1e6, 1e-6);
+  EXPECT_NEAR(column(other, pressure), 1e6, 1e-6);
 }
 
 }  // namespace flexarm::test

@@ -2,12 +2,11 @@
 #include <cmath>
 #include <limits>
 
-#include <gtest/gtest.h>
-
 #include "schemes/scheme.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
 #include "support/loops.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 
 namespace flexarm::test {
 namespace {
@@ -67,13 +66,8 @@ std::vector<CoordinateState> given(const Simulation& simulation) {
   return out;
 }
 
-void run(Simulation& simulation, double seconds) {
+void run_for(Simulation& simulation, double seconds) {
   for (int i = static_cast<int>(std::lround(seconds / kStep)); i > 0; --i) ASSERT_TRUE(simulation.step().converged);
-}
-
-double account(const Simulation& simulation) {
-  const Energies e = simulation.energies();
-  return e.total() - e.work + e.dissipated;
 }
 
 void expect_same_motion(const Simulation& a, const Simulation& b, double tolerance, const std::string& what) {
@@ -99,8 +93,8 @@ TEST(JointState, WhatIsSetGoesOnAsASceneThatStartsThere) {
     expect_same_motion(moved, started, kRoundOff, scheme);
     for (std::size_t i = 0; i < moved.coordinate_names().size(); ++i)
       EXPECT_NEAR(moved.velocity(i), started.velocity(i), 10 * kRoundOff) << scheme;
-    run(moved, kTime);
-    run(started, kTime);
+    run_for(moved, kTime);
+    run_for(started, kTime);
     const bool has_accelerations = !find_scheme(scheme)->is_incremental();
     expect_same_motion(moved, started, has_accelerations ? kSameAcceleration : kSameMotion, scheme);
   }
@@ -109,7 +103,7 @@ TEST(JointState, WhatIsSetGoesOnAsASceneThatStartsThere) {
 TEST(JointState, WhatIsNotNamedStaysAsItIs) {
   SceneBuilder b = arm();
   Simulation simulation(b.scene);
-  run(simulation, kTime);
+  run_for(simulation, kTime);
   const State before = state_of(simulation);
   const double energy = simulation.energies().total();
   const double energy_scale = 4.6 * 4;  // kinetic energy of bodies of 4.6 kg in all, at up to 4 m/s
@@ -128,12 +122,13 @@ TEST(JointState, WhatIsNotNamedStaysAsItIs) {
 TEST(JointState, StrainsAndTwistsOfGearsGoWithWhatIsMoved) {
   Simulation simulation(arm().scene);
   simulation.command_set_point(0, 0.35);
-  run(simulation, kTime);
+  run_for(simulation, kTime);
   const std::size_t elbow = *simulation.find_coordinate("elbow"), forearm = 2;
   ASSERT_EQ(simulation.link_names()[forearm], "forearm");
   const BeamPoint before = simulation.section(forearm, 0.25);
   const ActuatorState rotor = state_of(simulation).actuators[0];
-  const double time = simulation.time(), slack = rotor.angle - simulation.position(0), books = account(simulation);
+  const double time = simulation.time(), slack = rotor.angle - simulation.position(0),
+               books = energy_account(simulation);
   simulation.set_joint_state({{0, -0.5, {}}, {elbow, 0.9, 0.0}});
   const BeamPoint after = simulation.section(forearm, 0.25);
   EXPECT_GT(before.strain.norm(), 1e-4);
@@ -144,9 +139,9 @@ TEST(JointState, StrainsAndTwistsOfGearsGoWithWhatIsMoved) {
   EXPECT_EQ(state_of(simulation).actuators[0].servo.set_point, 0.35);
   EXPECT_EQ(simulation.position(*simulation.find_coordinate("slide")), 0.02 + 0.1 * 0.9);
   EXPECT_EQ(simulation.time(), time);
-  EXPECT_NEAR(account(simulation), books, kRoundOff * (1 + std::abs(books)));
-  run(simulation, kTime);
-  EXPECT_NEAR(account(simulation), books, 1e-9 * (1 + std::abs(books)));  // the error of Newton's tolerance
+  EXPECT_NEAR(energy_account(simulation), books, kRoundOff * (1 + std::abs(books)));
+  run_for(simulation, kTime);
+  EXPECT_NEAR(energy_account(simulation), books, 1e-9 * (1 + std::abs(books)));  // the error of Newton's tolerance
 }
 
 TEST(JointState, WhatCannotBeSetIsRefusedAndChangesNothing) {
@@ -154,16 +149,11 @@ TEST(JointState, WhatCannotBeSetIsRefusedAndChangesNothing) {
   b.scene.joints[1].limits = scene::JointLimits{-1, 1};
   b.scene.motions.push_back({"flight/x", TimeFunction(0.0), {}});
   Simulation simulation(b.scene);
-  run(simulation, 5 * kStep);
+  run_for(simulation, 5 * kStep);
   const State before = state_of(simulation);
   const auto coordinate = [&](const char* name) { return *simulation.find_coordinate(name); };
   const auto refused = [&](const std::vector<CoordinateState>& wanted, const char* told) {
-    try {
-      simulation.set_joint_state(wanted);
-      ADD_FAILURE() << told;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(told), std::string::npos) << error.what();
-    }
+    expect_contains(refusal<std::invalid_argument>([&] { simulation.set_joint_state(wanted); }), told);
     EXPECT_TRUE(same_bits(before, state_of(simulation)));
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -201,9 +191,9 @@ TEST(JointState, LoopsStayClosedOrAreRefused) {
     std::vector<CoordinateState> wanted = {{0, 0.3, 1.0}, {1, -0.3, -1.0}, {2, 0.3, 1.0}};
     if (is_flexible) wanted.push_back({*simulation.find_coordinate("foot"), 0.3, 1.0});
     simulation.set_joint_state(wanted);
-    const double books = account(simulation);
-    run(simulation, kTime);
-    EXPECT_NEAR(account(simulation), books, 1e-9) << is_flexible;  // no loop was opened, nothing is strained
+    const double books = energy_account(simulation);
+    run_for(simulation, kTime);
+    EXPECT_NEAR(energy_account(simulation), books, 1e-9) << is_flexible;  // no loop was opened, nothing is strained
     EXPECT_NEAR(simulation.position(1), -simulation.position(0), is_flexible ? 1e-3 : 1e-7);
     if (is_flexible) continue;
     EXPECT_THROW(simulation.set_joint_state({{0, {}, 5.0}}), std::invalid_argument);

@@ -5,16 +5,11 @@
 #include <cmath>
 #include <optional>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/scene_description.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "math/pi.h"
 #include "simulation/step_resolution.h"
 #include "support/dense_solution.h"
+#include "support/runs.h"
 #include "support/scene_text.h"
-#include "support/source_path.h"
 
 namespace flexarm {
 namespace {
@@ -245,11 +240,7 @@ VectorXd defect(const std::string& text, const std::string& joint, const std::st
   const int steps = static_cast<int>(std::lround(0.4 / step));
   scene::SceneDescription description = test::scene_of(text);
   description.starts_in_equilibrium = true;
-  SimulationOptions options;
-  options.scheme = "em";
-  options.step = step;
-  options.tolerance = 1e-13;
-  Simulation simulation(std::move(description), options);
+  Simulation simulation(std::move(description), test::options("em", step, 1e-13));
   LinearRequest request;
   request.inputs = {"effort:" + joint};
   request.outputs = {"position:" + joint, "position:" + output + ":x", "position:" + output + ":y",
@@ -353,12 +344,11 @@ TEST(LinearModel, DefectOfFourBarIsQuadratic) {
 
 // The four-bar vibrates at a frequency that the first step size does not resolve, and the second one does.
 TEST(LinearModel, SaysWhereStepsAreTooLong) {
-  scene::ReadResult result = scene::read_scene_file(test::source_path("config/examples/four_bar.urdf"));
-  ASSERT_TRUE(result.scene);
+  const scene::SceneDescription scene = test::scene_at("config/examples/four_bar.urdf");
   for (const double step : {2e-3, 2e-4}) {
     SimulationOptions options;
     options.step = step;
-    Simulation simulation(scene::SceneDescription(*result.scene), options);
+    Simulation simulation(scene, options);
     while (simulation.time() < 0.1 - step / 2) ASSERT_TRUE(simulation.step().converged);
     LinearRequest request;
     request.about = LinearisedAbout::Instant;

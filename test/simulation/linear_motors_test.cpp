@@ -1,13 +1,9 @@
 // Tests linear models about an instant of a motion with motors and controllers, against closed forms of a rotor on a
 // hinge.
 #include <cmath>
-#include <stdexcept>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/linear_model.h"
+#include "support/runs.h"
 #include "support/scene_text.h"
 
 namespace flexarm {
@@ -20,17 +16,15 @@ constexpr double kInertia = 2, kRotor = 0.4;  // of the link and of the rotor ab
 
 /// A wheel on a hinge that is driven by a motor, after a quarter of a second.
 Simulation turning_wheel(const std::string& drive, const std::string& servo) {
-  scene::SceneDescription description = test::scene_of(fmt::format(R"(<robot name="wheel"> <link name="world"/>
-        <joint name="hinge" type="continuous"> <parent link="world"/> <child link="wheel"/> <axis xyz="0 0 1"/> </joint>
-        <link name="wheel"> <inertial> <mass value="1"/>
-          <inertia ixx="1" iyy="1" izz="{}" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-        <drive joint="hinge" rotor_inertia="{}" {}/> <servo joint="hinge" {} set_point="sin(5*t)*0.3"/>
-        <simulation> <integrator scheme="em" step="0.001" tolerance="1e-13"/> <gravity xyz="0 0 0"/>
-          <initial joint="hinge" position="0.2" velocity="-0.5"/> </simulation> </robot>)",
-                                                                   kInertia, kRotor, drive, servo));
-  Simulation simulation(std::move(description));
-  for (int i = 0; i < 250; ++i)
-    if (!simulation.step().converged) throw std::runtime_error("a step failed");
+  Simulation simulation(test::scene_of(test::robot(
+      test::joint("hinge", "continuous", "world", "wheel", "<axis xyz='0 0 1'/>") +
+          test::body("wheel", 1, {1, 1, kInertia}) +
+          fmt::format(
+              R"(<drive joint="hinge" rotor_inertia="{}" {}/> <servo joint="hinge" {} set_point="sin(5*t)*0.3"/>)",
+              kRotor, drive, servo),
+      test::integrator("em", 0.001, 1e-13) + test::gravity({0, 0, 0}) +
+          "<initial joint='hinge' position='0.2' velocity='-0.5'/>")));
+  test::run(simulation, 250);
   return simulation;
 }
 

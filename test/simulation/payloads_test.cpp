@@ -1,38 +1,17 @@
 // Tests payloads that are attached and detached, and models that are spawned and removed, while a simulation moves.
 #include "flexarm/simulation/payloads.h"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
 namespace {
 
 using scene::JointKind;
-
-void advance(Simulation& simulation, int steps) {
-  for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation.step().converged) << "step " << n;
-}
-
-double account_of(const Simulation& simulation) {
-  const Energies energies = simulation.energies();
-  return energies.total() - energies.work + energies.dissipated;
-}
-
-std::size_t link_of(const Simulation& simulation, const std::string& name) {
-  const auto& names = simulation.link_names();
-  return std::find(names.begin(), names.end(), name) - names.begin();
-}
 
 void expect_near(const Vector3& value, const Vector3& expected, double tolerance) {
   EXPECT_LE((value - expected).norm(), tolerance) << value.transpose() << " is not " << expected.transpose();
@@ -72,9 +51,9 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     SceneBuilder b = two_bodies();
     b.scene.integrator = with_scheme(b.scene.integrator, scheme);
     Simulation s(b.scene);
-    advance(s, 40);
+    run(s, 40);
     const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
-    const double account = account_of(s), kinetic = s.energies().kinetic;
+    const double account = energy_account(s), kinetic = s.energies().kinetic;
     const Pose box = s.link_pose(link_of(s, "box"));
     const double time = s.time();
 
@@ -105,12 +84,12 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
     EXPECT_NEAR(s.energies().kinetic, left, 1e-10 * kinetic);
     EXPECT_NEAR(s.energies().dissipated - dissipated, kinetic - left, 1e-10 * kinetic);
-    EXPECT_NEAR(account_of(s), account, 1e-10 * kinetic);
+    EXPECT_NEAR(energy_account(s), account, 1e-10 * kinetic);
     expect_near(s.link_pose(link_of(s, "box")).position, box.position, 1e-12);
     EXPECT_EQ(s.coordinate_names().size(), 6u);
 
     const Pose relative = s.link_pose(1).inverse() * s.link_pose(2);
-    advance(s, 100);
+    run(s, 100);
     expect_near((s.link_pose(1).inverse() * s.link_pose(2)).position, relative.position, 1e-12);
     const Vector3 later = s.momentum(), later_spin = s.angular_momentum();
     const double energy = s.energies().kinetic;
@@ -119,9 +98,9 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     expect_near(s.angular_momentum(), later_spin, 1e-10 * spin.norm());
     EXPECT_NEAR(s.energies().kinetic, energy, 1e-10 * kinetic);
     EXPECT_EQ(s.coordinate_names().size(), 12u);
-    advance(s, 100);
+    run(s, 100);
     s.reset();
-    advance(s, 10);
+    run(s, 10);
   }
 }
 
@@ -131,32 +110,32 @@ TEST(Attach, AFlexibleArmTakesABoxAndLetsItGo) {
     SceneBuilder b = arm_and_box();
     b.scene.integrator = with_scheme(b.scene.integrator, scheme);
     Simulation s(b.scene);
-    advance(s, 20);
+    run(s, 20);
     const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
-    const double account = account_of(s), energy = s.energies().total(), dissipated = s.energies().dissipated;
+    const double account = energy_account(s), energy = s.energies().total(), dissipated = s.energies().dissipated;
     std::vector<BeamPoint> before, after;
     s.beam_points(link_of(s, "boom"), 0, before);
     const double strain = s.energies().strain;
     attach(s, "box", "boom");
     expect_near(s.momentum(), momentum, 1e-10 * momentum.norm());
     expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
-    EXPECT_NEAR(account_of(s), account, 1e-10 * energy);
+    EXPECT_NEAR(energy_account(s), account, 1e-10 * energy);
     EXPECT_GT(s.energies().dissipated, dissipated + 1e-3 * energy);
     EXPECT_NEAR(s.energies().strain, strain, 1e-9 * energy);
     s.beam_points(link_of(s, "boom"), 0, after);
     ASSERT_EQ(before.size(), after.size());
     for (std::size_t i = 0; i < before.size(); ++i) expect_near(after[i].pose.position, before[i].pose.position, 1e-13);
 
-    advance(s, 100);
+    run(s, 100);
     const Vector3 late = s.momentum(), late_spin = s.angular_momentum();
-    const double late_account = account_of(s);
+    const double late_account = energy_account(s);
     detach(s, "box");
     expect_near(s.momentum(), late, 1e-10 * momentum.norm());
     expect_near(s.angular_momentum(), late_spin, 1e-10 * spin.norm());
-    EXPECT_NEAR(account_of(s), late_account, 1e-10 * energy);
-    advance(s, 50);
+    EXPECT_NEAR(energy_account(s), late_account, 1e-10 * energy);
+    run(s, 50);
     if (b.scene.integrator.scheme != "em") continue;
-    EXPECT_NEAR(account_of(s), account, 1e-6 * energy);
+    EXPECT_NEAR(energy_account(s), account, 1e-6 * energy);
     expect_near(s.momentum(), momentum, 1e-8 * momentum.norm());
     expect_near(s.angular_momentum(), spin, 1e-8 * spin.norm());
   }
@@ -184,16 +163,13 @@ TEST(Attach, MovesAsASceneThatHadThePayloadFromTheStart) {
     without.scene.initial_joints.push_back({"box_free/z", 0.1, 0, {}});
     Simulation always(with.scene), taken(without.scene);
     attach(taken, "box", "boom");
-    for (int n = 0; n < 200; ++n) {
-      ASSERT_TRUE(always.step().converged);
-      ASSERT_TRUE(taken.step().converged);
-    }
+    run(always, 200), run(taken, 200);
     expect_near(taken.tip_pose(link_of(taken, "boom")).position, always.tip_pose(link_of(always, "boom")).position,
                 1e-7);
     expect_near(taken.link_pose(link_of(taken, "box")).position, always.link_pose(link_of(always, "box")).position,
                 1e-7);
     EXPECT_NEAR(taken.velocity(0), always.velocity(0), 1e-6);
-    EXPECT_NEAR(account_of(taken), account_of(always), 1e-8);
+    EXPECT_NEAR(energy_account(taken), energy_account(always), 1e-8);
   }
 }
 
@@ -204,26 +180,22 @@ TEST(Attach, AFlexiblePayloadIsTakenByARigidLink) {
   b.scene.initial_joints.push_back({"mast_free/x", 2, 0, {}});
   b.scene.initial_links.push_back({"mast", {0.1, 0.2, 0.3}, {0.5, 0.4, -0.3}, {}});
   Simulation s(b.scene);
-  advance(s, 10);
+  run(s, 10);
   const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
-  const double account = account_of(s);
+  const double account = energy_account(s);
   attach(s, "mast", "box");
   attach(s, "tug", "mast");
   expect_near(s.momentum(), momentum, 1e-10 * momentum.norm());
   expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
-  EXPECT_NEAR(account_of(s), account, 1e-9);
-  advance(s, 20);
+  EXPECT_NEAR(energy_account(s), account, 1e-9);
+  run(s, 20);
   detach(s, "mast");
-  advance(s, 20);
+  run(s, 20);
 }
 
-void expect_error(const std::string& part, const std::function<void()>& change) {
-  try {
-    change();
-    ADD_FAILURE() << "no error: " << part;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+template <class Change>
+void expect_error(const std::string& part, const Change& change) {
+  expect_contains(refusal<std::invalid_argument>(change), part);
 }
 
 TEST(Attach, SaysWhatIsWrong) {
@@ -240,7 +212,7 @@ TEST(Attach, SaysWhatIsWrong) {
   expect_error("'box' is attached already", [&] { attach(s, "box", "base"); });
   expect_error("there is no link 'nobody'", [&] { remove(s, "nobody"); });
   expect_error("is the world", [&] { remove(s, "world"); });
-  advance(s, 5);
+  run(s, 5);
 }
 
 TEST(Detach, FreesALinkOfTheScene) {
@@ -248,16 +220,16 @@ TEST(Detach, FreesALinkOfTheScene) {
   b.body("tool", 0.5, {0, 0.05, 0}, 0.01 * Matrix3::Identity());
   b.joint("weld", JointKind::Fixed, "boom", "tool", {0.37, 0, 0});  // a border of elements is made at the joint
   Simulation s(b.scene);
-  advance(s, 30);
+  run(s, 30);
   const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
-  const double account = account_of(s);
+  const double account = energy_account(s);
   detach(s, "tool");
   expect_near(s.momentum(), momentum, 1e-10 * momentum.norm());
   expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
-  EXPECT_NEAR(account_of(s), account, 1e-9);
-  advance(s, 30);
+  EXPECT_NEAR(energy_account(s), account, 1e-9);
+  run(s, 30);
   attach(s, "tool", "boom");
-  advance(s, 30);
+  run(s, 30);
 }
 
 scene::SceneDescription ball(double radius) {
@@ -280,17 +252,17 @@ TEST(Spawn, WhatMovesGoesOnAndTheNewBodyFlies) {
     scene::SceneDescription scene = driven_scene().scene;
     scene.integrator = with_scheme(scene.integrator, scheme);
     Simulation s(scene), alone(scene);
-    advance(s, 40), advance(alone, 40);
-    const double account = account_of(s);
+    run(s, 40), run(alone, 40);
+    const double account = energy_account(s);
     Spawn where{{{3, 4, 5}, Quaternion(Eigen::AngleAxisd(0.4, Vector3::UnitY()))}, {0.1, 0.2, 0.3}, {1, 2, 3}, "new_"};
     spawn(s, ball(0.1), where);
     EXPECT_EQ(s.time(), alone.time());
-    EXPECT_NEAR(account_of(s), account, 1e-9 * (1 + std::abs(account)));
+    EXPECT_NEAR(energy_account(s), account, 1e-9 * (1 + std::abs(account)));
     const std::size_t link = link_of(s, "new_ball");
     ASSERT_LT(link, s.link_names().size());
     expect_near(s.link_pose(link).position, where.pose.position, 1e-14);
     const double start = s.time();
-    advance(s, 40), advance(alone, 40);
+    run(s, 40), run(alone, 40);
     for (std::size_t i = 0; i < alone.coordinate_names().size(); ++i)
       EXPECT_NEAR(s.position(*s.find_coordinate(alone.coordinate_names()[i])), alone.position(i), tolerance)
           << alone.coordinate_names()[i];
@@ -299,7 +271,7 @@ TEST(Spawn, WhatMovesGoesOnAndTheNewBodyFlies) {
     expect_near(s.link_pose(link).position, expected, 1e-9);
     remove(s, "new_ball");
     EXPECT_EQ(s.link_names(), alone.link_names());
-    advance(s, 40), advance(alone, 40);
+    run(s, 40), run(alone, 40);
     for (std::size_t i = 0; i < alone.coordinate_names().size(); ++i)
       EXPECT_NEAR(s.position(i), alone.position(i), tolerance) << alone.coordinate_names()[i];
   }
@@ -319,17 +291,17 @@ TEST(Spawn, ANewBallFallsOnTheGroundAndIsTaken) {
   all.restitution.values = {0.05};
   b.scene.contacts.push_back(all);
   Simulation s(b.scene);
-  advance(s, 5);
+  run(s, 5);
   spawn(s, ball(0.1), {{{3, 0, 0.2}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), ""});
   spawn(s, ball(0.1), {{{3, 0.05, 0.42}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "upper_"});
-  advance(s, 500);
+  run(s, 500);
   EXPECT_NEAR(s.link_pose(link_of(s, "ball")).position.z(), 0.1, 2e-3);
   EXPECT_NEAR(s.link_pose(link_of(s, "upper_ball")).position.z(), 0.1, 2e-3);
   attach(s, "upper_ball", "ball");
-  advance(s, 50);
+  run(s, 50);
   remove(s, "ball");
   EXPECT_EQ(link_of(s, "upper_ball"), s.link_names().size()) << "what it carried went with it";
-  advance(s, 20);
+  run(s, 20);
 }
 
 TEST(Spawn, AMechanismHangsOnTheWorldAtItsPose) {
@@ -339,25 +311,25 @@ TEST(Spawn, AMechanismHangsOnTheWorldAtItsPose) {
   pendulum.scene.initial_joints.push_back({"pivot", 0.3, 0, {}});
   pendulum.servo("pivot", 5, 1);
   Simulation s(two_bodies().scene);
-  advance(s, 5);
+  run(s, 5);
   spawn(s, pendulum.scene, {{{2, 0, 0}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "left/"});
   spawn(s, pendulum.scene, {{{-2, 0, 0}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "right/"});
   expect_near(s.link_pose(link_of(s, "right/rod")).position, {-2, 0, 1}, 1e-14);
   const std::size_t pivot = *s.find_coordinate("left/pivot");
   EXPECT_TRUE(s.has_servo(pivot));
   EXPECT_NEAR(s.position(pivot), 0.3, 1e-14);
-  advance(s, 20);
+  run(s, 20);
   s.command_set_point(pivot, 0.7);
   attach(s, "box", "right/rod");
   EXPECT_NEAR(s.set_point(*s.find_coordinate("left/pivot")), 0.7, 0);
-  advance(s, 20);
+  run(s, 20);
   remove(s, "left/rod");
   EXPECT_FALSE(s.find_coordinate("left/pivot").has_value());
-  advance(s, 20);
+  run(s, 20);
   const Spawn again{{}, Vector3::Zero(), Vector3::Zero(), "right/"}, moving{{}, {1, 0, 0}, Vector3::Zero(), "more/"};
   expect_error("there is a link 'right/rod' already", [&] { spawn(s, pendulum.scene, again); });
   expect_error("root link floats", [&] { spawn(s, pendulum.scene, moving); });
-  advance(s, 5);
+  run(s, 5);
 }
 
 }  // namespace

@@ -4,17 +4,14 @@
 #include <cstdio>
 #include <functional>
 
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "integrators/step_plane.h"
 #include "math/so3.h"
 #include "schemes/scheme.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
-#include "support/source_path.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -27,9 +24,7 @@ constexpr double kSame = 1e-11;
 const std::vector<std::string> kPlanarSchemes = {"em", "em0", "em_symmetric", "em4", "edmc1", "edmc2"};
 
 PlaneSearch plane_of(const scene::SceneDescription& scene, const std::string& scheme = "em") {
-  SimulationOptions options;
-  options.scheme = scheme;
-  const Simulation simulation(scene, options);
+  const Simulation simulation(scene, options(scheme));
   return find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
 }
 
@@ -82,8 +77,7 @@ double distance(const Simulation& a, const Simulation& b) {
 /// Compares a run in the plane with a run in three dimensions. `act(simulation, step)` is called before each step.
 void expect_same_motion(const scene::SceneDescription& scene, const std::string& scheme, int steps,
                         const std::function<void(Simulation&, int)>& act = {}) {
-  SimulationOptions options;
-  options.scheme = scheme;
+  const SimulationOptions options = test::options(scheme);
   ASSERT_TRUE(plane_of(scene, scheme).plane) << scheme << ": " << plane_of(scene, scheme).reason;
   Simulation plane(scene, options), space(in_space(scene), options);
   for (int n = 0; n < steps; ++n) {
@@ -130,11 +124,10 @@ TEST(Planar, TakesMaxwellElements) {
 TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
   for (const char* file : {"config/speed/double_pendulum.urdf", "config/speed/spin_up.urdf",
                            "config/examples/rigid_double_pendulum.urdf"}) {
-    const scene::ReadResult read = scene::read_scene_file(source_path(file));
-    ASSERT_TRUE(read.scene) << file;
-    const PlaneSearch search = plane_of(*read.scene);
+    const scene::SceneDescription scene = scene_at(file);
+    const PlaneSearch search = plane_of(scene);
     EXPECT_TRUE(search.plane) << file << ": " << search.reason;
-    for (const std::string& scheme : kPlanarSchemes) expect_same_motion(*read.scene, scheme, 60);
+    for (const std::string& scheme : kPlanarSchemes) expect_same_motion(scene, scheme, 60);
   }
 }
 
@@ -160,8 +153,7 @@ TEST(Planar, WhatNoDamperKeepsStaysZero) {
     if (is_damped) beam.stiffness_proportional_damping = 1e-3;
     b.joint("clamp", JointKind::Fixed, "world", "rod");
     b.load("rod", {1, 0, 0}, {0, 1, 0});
-    SimulationOptions options;
-    options.scheme = is_damped ? "em" : "edmc1";
+    const SimulationOptions options = test::options(is_damped ? "em" : "edmc1");
     ASSERT_TRUE(plane_of(b.scene, *options.scheme).plane);
     Simulation simulation(b.scene, options);
     for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
@@ -254,9 +246,7 @@ TEST(Planar, IsLiftedByWrenches) {
 TEST(Planar, StaysInThePlaneUnderWrenchesThere) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
   for (const char* scheme : {"em", "edmc2"}) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    Simulation simulation(scene, options);
+    Simulation simulation(scene, options(scheme));
     const Vector3 normal = kTilt * Vector3::UnitZ();
     const std::size_t tip = simulation.link_names().size() - 1;
     const PlaneSearch search = plane_of(scene, scheme);
@@ -271,14 +261,9 @@ TEST(Planar, StaysInThePlaneUnderWrenchesThere) {
 class PlanarSnapshots : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PlanarSnapshots, GoOnFromAny) {
-  SimulationOptions options;
-  options.reuse_factorisation = false;
-  options.scheme = GetParam();
+  const SimulationOptions options = full_newton(test::options(GetParam()));
   Simulation simulation(tilted_arm(kTilt).scene, options);
   const std::size_t tip = simulation.link_names().size() - 1;
-  const auto run = [](Simulation& s, int steps) {
-    for (int n = 0; n < steps; ++n) ASSERT_TRUE(s.step().converged);
-  };
   run(simulation, 10);
   const Snapshot in_plane = simulation.snapshot();
   simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(0, 0, 1), Vector3::Zero()}}});
@@ -309,9 +294,7 @@ TEST_P(PlanarSnapshots, GoOnFromAny) {
 
 TEST_P(PlanarSnapshots, GoOnFromFilesAndOtherSimulations) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
-  SimulationOptions options;
-  options.reuse_factorisation = false;
-  options.scheme = GetParam();
+  const SimulationOptions options = full_newton(test::options(GetParam()));
   const std::string path = testing::TempDir() + "flexarm_planar_" + GetParam() + ".state";
   for (const bool is_lifted : {false, true}) {
     Simulation simulation(scene, options), other(scene, options), taken(scene, options);

@@ -4,12 +4,10 @@
 #include <cstdio>
 #include <limits>
 
-#include <gtest/gtest.h>
-
 #include "flexarm/simulation/checkpoint.h"
 #include "simulation/body_with_beam.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -30,16 +28,12 @@ SceneBuilder slider() {
 }
 
 AppliedWrench pull_on(const Simulation& simulation, const std::string& link, double damping) {
-  return {index_of(simulation, link), kPoint, {}, false, {kTarget, kStiffness, damping}};
+  return {link_of(simulation, link), kPoint, {}, false, {kTarget, kStiffness, damping}};
 }
 
 class Pulls : public ::testing::TestWithParam<std::string> {
  protected:
-  static Simulation simulated(const SceneBuilder& builder) {
-    SimulationOptions options;
-    options.scheme = GetParam();
-    return Simulation(builder.scene, options);
-  }
+  static Simulation simulated(const SceneBuilder& builder) { return Simulation(builder.scene, options(GetParam())); }
 };
 
 // Without a damper, the work of the pull equals the energy that the spring loses.
@@ -47,7 +41,7 @@ TEST_P(Pulls, DoTheWorkThatTheSpringLoses) {
   Simulation simulation = simulated(body_with_beam());
   simulation.apply_wrenches({pull_on(simulation, "body", 0)});
   const auto potential = [&] {
-    const Pose body = simulation.link_pose(index_of(simulation, "body"));
+    const Pose body = simulation.link_pose(link_of(simulation, "body"));
     return 0.5 * kStiffness * (kTarget - body * kPoint).squaredNorm();
   };
   const double start = potential();
@@ -105,9 +99,7 @@ TEST(Pull, WithADamperIsOfTheOrderOfCompositions) {
 
 // The tangent of the pull is exact, so Newton's method converges as fast as without the pull.
 TEST(Pull, CostsNoIterations) {
-  SimulationOptions options;
-  options.reuse_factorisation = false;
-  Simulation simulation(body_with_beam().scene, options);
+  Simulation simulation(body_with_beam().scene, full_newton());
   AppliedWrench pull = pull_on(simulation, "body", 50);
   pull.pull.stiffness = 5000;
   simulation.apply_wrenches({pull});
@@ -139,8 +131,7 @@ TEST(Pull, HoldsInEquilibrium) {
 
 TEST(Pull, IsKeptInTheState) {
   const std::string path = ::testing::TempDir() + "flexarm_pulls_test.state";
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   Simulation simulation(body_with_beam().scene, options), resumed(body_with_beam().scene, options);
   simulation.apply_wrenches({pull_on(simulation, "body", kDamping)});
   for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
@@ -164,9 +155,7 @@ TEST(Pull, ThatCannotActIsRefused) {
   AppliedWrench pull = pull_on(simulation, "body", 0);
   pull.pull.target.x() = std::numeric_limits<double>::infinity();
   EXPECT_THROW(simulation.apply_wrenches({pull}), std::invalid_argument);
-  SimulationOptions options;
-  options.scheme = "hht2";
-  Simulation interpolating(body_with_beam().scene, options);
+  Simulation interpolating(body_with_beam().scene, options("hht2"));
   EXPECT_THROW(interpolating.apply_wrenches({pull_on(interpolating, "body", 0)}), std::invalid_argument);
   EXPECT_TRUE(state_of(simulation).wrenches.empty());
 }
@@ -207,12 +196,12 @@ TEST(ShownWrenches, EffortsActAlongTheirAxes) {
   std::vector<ActingWrench> wrenches;
   simulation.effort_wrenches(wrenches);
   ASSERT_EQ(wrenches.size(), 2u);
-  const Pose arm = simulation.link_pose(index_of(simulation, "arm"));
+  const Pose arm = simulation.link_pose(link_of(simulation, "arm"));
   EXPECT_LT((wrenches[0].position - Vector3(0, 0, 2)).norm(), 1e-12);
   EXPECT_LT((wrenches[0].wrench.moment - 4 * Vector3::UnitZ()).norm(), 1e-12);
   EXPECT_TRUE(wrenches[0].wrench.force.isZero(0));
   EXPECT_LT((wrenches[1].wrench.force + 2 * (arm.orientation * Vector3::UnitX())).norm(), 1e-12);
-  EXPECT_LT((wrenches[1].position - simulation.link_pose(index_of(simulation, "slide")).position).norm(), 1e-12);
+  EXPECT_LT((wrenches[1].position - simulation.link_pose(link_of(simulation, "slide")).position).norm(), 1e-12);
 }
 
 TEST(ShownWrenches, OfSensorsAreFreeOfErrors) {
@@ -224,7 +213,7 @@ TEST(ShownWrenches, OfSensorsAreFreeOfErrors) {
   Simulation simulation(b.scene);
   for (int n = 0; n < 50; ++n) ASSERT_TRUE(simulation.step().converged);
   const ActingWrench wrench = simulation.sensed_wrench(0);
-  const Pose beam = simulation.link_pose(index_of(simulation, "beam"));
+  const Pose beam = simulation.link_pose(link_of(simulation, "beam"));
   EXPECT_LT((wrench.position - beam * Vector3(0, 0.2, 0)).norm(), 1e-12);
   const Vector3 force = beam.orientation.conjugate() * wrench.wrench.force;
   const Vector3 moment = beam.orientation.conjugate() * wrench.wrench.moment;
@@ -239,8 +228,8 @@ TEST(Shown, MassAndFixedLinks) {
   const SceneBuilder b = body_with_beam();
   const Simulation simulation(b.scene);
   EXPECT_NEAR(simulation.mass(), 1 + 0.5, 1e-12);
-  EXPECT_TRUE(simulation.is_fixed_to_world(index_of(simulation, "world")));
-  EXPECT_FALSE(simulation.is_fixed_to_world(index_of(simulation, "body")));
+  EXPECT_TRUE(simulation.is_fixed_to_world(link_of(simulation, "world")));
+  EXPECT_FALSE(simulation.is_fixed_to_world(link_of(simulation, "body")));
 }
 
 // The sections are those of the undeformed beam in its link's frame, wherever the link starts.
@@ -248,7 +237,7 @@ TEST(Shown, UndeformedSections) {
   SceneBuilder b = body_with_beam();
   b.scene.initial_joints.push_back({"ball/rz", 0.7, 0, {}});
   Simulation simulation(b.scene);
-  const std::size_t beam = index_of(simulation, "beam");
+  const std::size_t beam = link_of(simulation, "beam");
   for (int n = 0; n < 20; ++n) ASSERT_TRUE(simulation.step().converged);
   const std::vector<Pose> sections = simulation.undeformed_sections(beam, 1);
   ASSERT_EQ(sections.size(), 17u);  // 9 nodes
@@ -256,7 +245,7 @@ TEST(Shown, UndeformedSections) {
     EXPECT_LT((sections[k].position - Vector3(k / 16.0, 0, 0)).norm(), 1e-12);
     EXPECT_LT((sections[k].orientation * Vector3::UnitX() - Vector3::UnitX()).norm(), 1e-12);
   }
-  EXPECT_TRUE(simulation.undeformed_sections(index_of(simulation, "body"), 1).empty());
+  EXPECT_TRUE(simulation.undeformed_sections(link_of(simulation, "body"), 1).empty());
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // Tests recovery of steps: they are counted, done by another scheme if that is allowed, and limited in wall-clock time.
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include "integrators/dissipative_substitute.h"
 #include "integrators/energies.h"
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -33,18 +31,14 @@ struct Outcome {
   double defect = 0;  // largest change of total energy - work + dissipation [J]
 };
 
-Outcome run(Simulation& simulation, int steps) {
+Outcome outcome_of(Simulation& simulation, int steps) {
   Outcome out;
-  const auto account = [&] {
-    const Energies e = simulation.energies();
-    return e.total() - e.work + e.dissipated;
-  };
-  const double start = account();
+  const double start = energy_account(simulation);
   for (int n = 0; n < steps && out.converged; ++n) {
     const StepResult result = simulation.step();
     out.counts.add(result);
     out.converged = result.converged;
-    out.defect = std::max(out.defect, std::abs(account() - start));
+    out.defect = std::max(out.defect, std::abs(energy_account(simulation) - start));
   }
   return out;
 }
@@ -56,10 +50,10 @@ TEST(Recovery, EdmcDoesWhatTheSchemeCannotWhereThatIsAllowed) {
       scene::SceneDescription scene = stiff_cantilever(1, step);
       scene.integrator.max_iterations = max_iterations;
       Simulation stops(scene);
-      if (run(stops, 60).converged) continue;
+      if (outcome_of(stops, 60).converged) continue;
       scene.integrator.on_failure = OnFailure::Dissipate;
       Simulation dissipates(scene);
-      const Outcome saved = run(dissipates, 60);
+      const Outcome saved = outcome_of(dissipates, 60);
       EXPECT_TRUE(state_of(dissipates).strain_memory.empty()) << "em has none";
       // Round-off: that of strains is 1e-16 over an element's length; it is multiplied by axial forces, EA times
       // strains of 1e-2, over some hundred steps. Energies are 0.1 J.
@@ -128,7 +122,7 @@ TEST(Recovery, NothingIsDissipatedWhereNothingFails) {
   Simulation stops(scene);
   scene.integrator.on_failure = OnFailure::Dissipate;
   Simulation dissipates(scene);
-  const Outcome one = run(stops, 50), other = run(dissipates, 50);
+  const Outcome one = outcome_of(stops, 50), other = outcome_of(dissipates, 50);
   ASSERT_TRUE(one.converged && other.converged);
   EXPECT_EQ(other.counts.dissipated_steps, 0);
   for (std::size_t i = 0; i < state_of(stops).nodes.size(); ++i)
@@ -176,10 +170,8 @@ TEST(Recovery, HalvingsAreCountedAndNamed) {
 // converge.
 TEST(Recovery, NoStepIsHalvedForSteepFriction) {
   for (const char* scheme : {"em", "em0", "em_symmetric", "m1", "std"}) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    Simulation simulation(everything_scene().scene, options);
-    const Outcome out = run(simulation, 80);
+    Simulation simulation(everything_scene().scene, options(scheme));
+    const Outcome out = outcome_of(simulation, 80);
     EXPECT_TRUE(out.converged) << scheme;
     EXPECT_EQ(out.counts.halvings, 0) << scheme;
     std::printf("%s: %ld halvings, %ld from other guesses\n", scheme, out.counts.halvings, out.counts.other_guesses);

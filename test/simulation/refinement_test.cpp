@@ -9,21 +9,19 @@
 #include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "building/model_builder.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/model/model_error.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/linear_model.h"
 #include "flexarm/simulation/payloads.h"
 #include "integrators/energies.h"
 #include "math/pi.h"
-#include "simulation/inside.h"
 #include "simulation/mesh_change.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
-#include "support/source_path.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -46,11 +44,6 @@ SceneBuilder flying_rod(bool refine, const char* scheme = "em", const std::strin
   return b;
 }
 
-double account_of_energy(const Simulation& simulation) {
-  const Energies e = simulation.energies();
-  return e.total() - e.work + e.dissipated;
-}
-
 std::size_t halvings(const Simulation& simulation) {
   return state_of(simulation).halved.size();
 }
@@ -59,7 +52,7 @@ TEST(Refinement, MomentaAndAccountOfAWoundRodAreKept) {
   for (const char* scheme : {"em", "em_symmetric", "edmc2"}) {
     Simulation simulation(flying_rod(true, scheme).scene);
     const Vector3 linear = simulation.momentum(), angular = simulation.angular_momentum();
-    const double account = account_of_energy(simulation);
+    const double account = energy_account(simulation);
     double largest_energy = 0;
     std::set<std::size_t> counts;
     for (int n = 0; n < 200; ++n) {
@@ -72,7 +65,7 @@ TEST(Refinement, MomentaAndAccountOfAWoundRodAreKept) {
       const double tolerance = 100 * simulation.tolerance();
       EXPECT_LE((simulation.momentum() - linear).norm(), tolerance * linear.norm()) << scheme << ", step " << n;
       EXPECT_LE((simulation.angular_momentum() - angular).norm(), tolerance * angular.norm()) << scheme << ", " << n;
-      EXPECT_NEAR(account_of_energy(simulation), account, tolerance * largest_energy) << scheme << ", step " << n;
+      EXPECT_NEAR(energy_account(simulation), account, tolerance * largest_energy) << scheme << ", step " << n;
       if (::testing::Test::HasFailure()) break;
     }
     EXPECT_GT(*counts.rbegin(), 4u) << scheme;
@@ -83,7 +76,7 @@ TEST(Refinement, HalvesAreJoinedWhenTheRodIsStraightAgain) {
   // Damping stretches the rod.
   Simulation simulation(flying_rod(true, "em", "t < 0.05 ? 1 : 0", 5e-2).scene);
   const Vector3 linear = simulation.momentum(), angular = simulation.angular_momentum();
-  const double account = account_of_energy(simulation);
+  const double account = energy_account(simulation);
   std::size_t most = 0;
   for (int n = 0; n < 500; ++n) {
     ASSERT_TRUE(simulation.step().converged);
@@ -94,7 +87,7 @@ TEST(Refinement, HalvesAreJoinedWhenTheRodIsStraightAgain) {
   const double tolerance = 100 * simulation.tolerance();
   EXPECT_LE((simulation.momentum() - linear).norm(), tolerance * linear.norm());
   EXPECT_LE((simulation.angular_momentum() - angular).norm(), tolerance * angular.norm());
-  EXPECT_NEAR(account_of_energy(simulation), account, tolerance * simulation.energies().work);
+  EXPECT_NEAR(energy_account(simulation), account, tolerance * simulation.energies().work);
 }
 
 /// The state with elements halved as in `halved`.
@@ -108,7 +101,7 @@ State changed(const Simulation& simulation, const std::vector<HalvedElement>& ha
 TEST(Refinement, HalvingAndJoiningKeepMomentaUpToRoundOff) {
   // Elements are bent by up to about a radian.
   Simulation simulation(flying_rod(false, "em", "t < 0.05 ? 0.4 : 0").scene);
-  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 10);
   const std::vector<HalvedElement> some = {{1, 0, 1}, {1, 1, 1}, {1, 3, 1}};
   Model fine;
   const State halved = changed(simulation, some, fine);
@@ -178,10 +171,9 @@ TEST(Refinement, WoundBeamBecomesACircle) {
 }
 
 TEST(Refinement, RunGoesOnFromACheckpointWithTheSameBits) {
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   Simulation simulation(flying_rod(true).scene, options), other(flying_rod(true).scene, options);
-  for (int n = 0; n < 60; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 60);
   ASSERT_GT(halvings(simulation), 0u);
   read_checkpoint_text(other, checkpoint_text(simulation), "saved");
   EXPECT_EQ(checkpoint_text(other), checkpoint_text(simulation));
@@ -209,7 +201,7 @@ TEST(Refinement, MirrorsShowStatesOfAnyMesh) {
 
 TEST(Refinement, DamagedListsOfHalvedElementsAreRefused) {
   Simulation simulation(flying_rod(true).scene);
-  for (int n = 0; n < 60; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 60);
   const Model& model = model_of(simulation);
   EXPECT_EQ(halving_flaw(model, model.halved), "");
   EXPECT_NE(halving_flaw(model, {{1, 0, 2}}), "");  // its parent is whole
@@ -227,15 +219,15 @@ TEST(Refinement, PayloadsComeAndGoOnHalvedElements) {
   b.joint("box_free", JointKind::Floating, "world", "box");
   b.scene.initial_joints.push_back({"box_free/y", 3, 0, {}});
   Simulation simulation(b.scene);
-  for (int n = 0; n < 60; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 60);
   const std::size_t count = halvings(simulation);
   ASSERT_GT(count, 0u);
   const Vector3 linear = simulation.momentum(), angular = simulation.angular_momentum();
   attach(simulation, "box", "rod");
   EXPECT_EQ(halvings(simulation), count);
-  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 10);
   detach(simulation, "box");
-  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 10);
   EXPECT_LE((simulation.momentum() - linear).norm(), 100 * simulation.tolerance() * linear.norm());
   EXPECT_LE((simulation.angular_momentum() - angular).norm(), 100 * simulation.tolerance() * angular.norm());
   LinearRequest request;
@@ -247,7 +239,7 @@ TEST(Refinement, PayloadsComeAndGoOnHalvedElements) {
 /// in each of them.
 void expect_account_closes(const SceneBuilder& b) {
   Simulation simulation(b.scene);
-  const double account = account_of_energy(simulation);
+  const double account = energy_account(simulation);
   double dissipated = 0, largest_energy = 0;
   for (int n = 0; n < 60; ++n) {
     const StepResult result = simulation.step();
@@ -255,7 +247,7 @@ void expect_account_closes(const SceneBuilder& b) {
     const Energies e = simulation.energies();
     largest_energy = std::max(largest_energy, e.kinetic + e.strain);
     EXPECT_GT(e.dissipated, dissipated) << "step " << n;
-    EXPECT_NEAR(account_of_energy(simulation), account, 100 * simulation.tolerance() * largest_energy) << "step " << n;
+    EXPECT_NEAR(energy_account(simulation), account, 100 * simulation.tolerance() * largest_energy) << "step " << n;
     dissipated = e.dissipated;
   }
   EXPECT_GT(halvings(simulation), 0u);
@@ -292,12 +284,12 @@ SceneBuilder bead_on_beam(int elements, bool refine, double step) {
 TEST(Refinement, SliderPassesOverBordersOfHalves) {
   const auto end_of = [](int elements, bool refine, double step) {
     Simulation simulation(bead_on_beam(elements, refine, step).scene);
-    const double account = account_of_energy(simulation);
+    const double account = energy_account(simulation);
     while (simulation.time() < 0.6 - 1e-9) {
       const StepResult result = simulation.step();
       EXPECT_TRUE(result.converged) << simulation.explain(result);
       if (!result.converged) break;
-      EXPECT_NEAR(account_of_energy(simulation), account, 1e-6);
+      EXPECT_NEAR(energy_account(simulation), account, 1e-6);
     }
     EXPECT_EQ(halvings(simulation) > 0, refine);
     return simulation.probe(0).pose.position;
@@ -314,13 +306,13 @@ TEST(Refinement, SlidersLeaveHalvedLines) {
   b.scene.initial_joints.back().velocity = 2;
   Simulation simulation(b.scene);
   Simulation mirror = simulation.copy();
-  const double account = account_of_energy(simulation);
+  const double account = energy_account(simulation);
   std::size_t when_left = 0;  // number of halvings
   for (int n = 0; n < 900; ++n) {
     const StepResult result = simulation.step();
     ASSERT_TRUE(result.converged) << simulation.explain(result);
     if (when_left == 0 && !state_of(simulation).left_lines.empty()) when_left = halvings(simulation);
-    EXPECT_NEAR(account_of_energy(simulation), account, 100 * simulation.tolerance() * simulation.energies().total());
+    EXPECT_NEAR(energy_account(simulation), account, 100 * simulation.tolerance() * simulation.energies().total());
   }
   EXPECT_GT(when_left, 0u);
   EXPECT_GT(halvings(simulation), when_left);
@@ -331,18 +323,10 @@ TEST(Refinement, SlidersLeaveHalvedLines) {
 }
 
 TEST(Refinement, IsRefusedWhereItIsNotPossible) {
-  const auto refusal = [](const scene::SceneDescription& scene) -> std::string {
-    try {
-      Simulation simulation(scene);
-    } catch (const ModelError& error) {
-      return error.what();
-    }
-    return "";
-  };
   for (const char* scheme : {"em", "em0", "em_symmetric", "em4", "edmc1", "edmc2"})
-    EXPECT_EQ(refusal(flying_rod(true, scheme).scene), "") << scheme;
+    EXPECT_EQ(refusal_of(flying_rod(true, scheme).scene), "") << scheme;
   for (const char* scheme : {"m1", "m2", "std", "beta1", "newmark", "hht3"})
-    EXPECT_NE(refusal(flying_rod(true, scheme).scene).find("has no <beam refine=\"true\">"), std::string::npos);
+    expect_contains(refusal_of(flying_rod(true, scheme).scene), "has no <beam refine=\"true\">");
   SceneBuilder closed = bead_on_beam(4, true, 1e-3);
   closed.body("bar", 0.1, {0, 0, 0}, 1e-5 * Matrix3::Identity());
   closed.joint("bar_free", JointKind::Floating, "world", "bar", {0.1, 0, 0});
@@ -353,14 +337,14 @@ TEST(Refinement, IsRefusedWhereItIsNotPossible) {
   ball.parent = "bead";
   ball.child = "bar";
   closed.scene.loop_joints.push_back(ball);
-  EXPECT_NE(refusal(closed.scene).find("expected refine=\"false\" in a scene with a <loop_joint>"), std::string::npos)
-      << refusal(closed.scene);
+  EXPECT_NE(refusal_of(closed.scene).find("expected refine=\"false\" in a scene with a <loop_joint>"),
+            std::string::npos)
+      << refusal_of(closed.scene);
 
-  scene::ReadResult wiper = scene::read_scene_file(source_path("config/examples/wiper.urdf"));
-  ASSERT_TRUE(wiper.scene);
-  for (scene::LinkDescription& link : wiper.scene->links)
+  scene::SceneDescription wiper = scene_at("config/examples/wiper.urdf");
+  for (scene::LinkDescription& link : wiper.links)
     if (link.beam) link.beam->refine = true;
-  const std::string touching = refusal(*wiper.scene);
+  const std::string touching = refusal_of(wiper);
   EXPECT_NE(touching.find("wiper.urdf:"), std::string::npos) << touching;
   EXPECT_NE(touching.find("may touch something"), std::string::npos) << touching;
 
@@ -392,9 +376,8 @@ TEST(Refinement, LeftOpenIsTrueOnlyWhereItIsPossible) {
   EXPECT_EQ(refined(rod("em", 2, 0)), Refine{std::nullopt});
   EXPECT_EQ(refined(rod("m1", 2, 4)), Refine{std::nullopt});
   EXPECT_EQ(refined(flying_rod(false).scene), Refine{false});
-  const scene::ReadResult wiper = scene::read_scene_file(source_path("config/examples/wiper.urdf"));
-  ASSERT_TRUE(wiper.scene);
-  for (const std::optional<bool>& beam : refined(*wiper.scene)) EXPECT_FALSE(beam.has_value());
+  const scene::SceneDescription wiper = scene_at("config/examples/wiper.urdf");
+  for (const std::optional<bool>& beam : refined(wiper)) EXPECT_FALSE(beam.has_value());
 }
 
 TEST(Refinement, LeftOpenIsFalseInSteps) {

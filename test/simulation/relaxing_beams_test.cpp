@@ -2,14 +2,12 @@
 // derivatives of runs.
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/linear_model.h"
 #include "flexarm/simulation/payloads.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
 #include "simulation/sensitivity_scenes.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -37,8 +35,7 @@ void take_steps(Simulation& simulation, int steps) {
 }
 
 TEST(RelaxingBeams, ContinueFromSnapshotsCopiesAndCheckpoints) {
-  SimulationOptions options;
-  options.reuse_factorisation = false;  // with it, only to within Newton's tolerance
+  const SimulationOptions options = full_newton();  // with it, only to within Newton's tolerance
   Simulation whole(relaxing_arm().scene, options);
   take_steps(whole, 20);
   const Snapshot snapshot = whole.snapshot();

@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include <gtest/gtest.h>
-
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -128,9 +127,8 @@ TEST(RunSummary, EnergyAccountOfALooseToleranceIsOutOfBounds) {
   b.scene.gravity.setZero();
   b.scene.integrator.step = 0.05;
   b.scene.integrator.tolerance = 0.05;
-  SimulationOptions options;
-  options.reuse_factorisation = false;  // reuse would converge to round-off
-  Simulation simulation(b.scene, options);
+  // reuse would converge to round-off
+  Simulation simulation(b.scene, full_newton());
   const std::vector<std::string> warnings = warnings_after(simulation, 40);
   ASSERT_FALSE(warnings.empty());
   EXPECT_NE(warnings.back().find("energy - work + dissipation changed"), std::string::npos) << warnings.back();

@@ -5,15 +5,14 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "analysis/mechanism_states.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/linear_model.h"
 #include "model/state_numbers.h"
-#include "simulation/inside.h"
 #include "simulation/linear_names.h"
 #include "simulation/sensitivity_scenes.h"
+#include "support/runs.h"
 
 namespace flexarm::test {
 namespace {
@@ -185,12 +184,10 @@ TEST(Sensitivities, ParameterAtTheEndOfItsRange) {
 
 /// Round-off of a run: the difference to the same run with new factors in every iteration.
 double round_off(const Scene& scene, int steps) {
-  SimulationOptions always_new;
-  always_new.reuse_factorisation = false;
   const auto run = [&](const SimulationOptions& options) {
     return after([&](double) { return scene.simulation({}, options); }, 0, steps);
   };
-  return (run({}) - run(always_new)).cwiseAbs().maxCoeff();
+  return (run({}) - run(full_newton())).cwiseAbs().maxCoeff();
 }
 
 /// Compares the derivatives with respect to the joint positions and rates at the start with differences. `round_off` of

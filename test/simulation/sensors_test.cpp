@@ -1,10 +1,10 @@
 // Tests what sensors measure, at which times, and with which errors.
-#include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/checkpoint.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -247,8 +247,7 @@ TEST(Sensors, GoOnFromACheckpointAsIfNothingHadBeen) {
   b.sensor("root", SensorKind::Reaction, "arm");
   b.sensor("gauge", SensorKind::Strain, "arm", {0.3, 0.02, 0});
   for (scene::Sensor& sensor : b.scene.sensors) sensor.noise = {0.01}, sensor.rate = 170;
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   Simulation whole(b.scene, options), resumed(b.scene, options);
   for (int n = 0; n < 50; ++n) whole.step();
   const std::string path = (std::filesystem::temp_directory_path() / "flexarm_sensors_test").string();

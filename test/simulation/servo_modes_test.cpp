@@ -8,6 +8,7 @@
 #include "flexarm/simulation/checkpoint.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/refusal.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -34,7 +35,7 @@ SceneBuilder block_on_rail() {
   return b;
 }
 
-void run(Simulation& simulation, double seconds) {
+void run_for(Simulation& simulation, double seconds) {
   for (int i = std::lround(seconds / kStep); i > 0; --i) ASSERT_TRUE(simulation.step().converged);
 }
 
@@ -51,7 +52,7 @@ TEST(ServoModes, SwitchingIsNoBump) {
           drive.damping = 40;
         }
         Simulation simulation(b.scene);
-        run(simulation, 8);
+        run_for(simulation, 8);
         const double rest = simulation.position(0);
         EXPECT_NEAR(rest, 0.25 + (is_elastic ? kLoad / 1e4 : 0), 1e-6) << "where the integral has brought it";
         for (const Mode mode : {Mode::Velocity, Mode::Effort, Mode::Position, Mode::Effort, Mode::Velocity}) {
@@ -164,7 +165,7 @@ TEST(ServoModes, NoPairOfModesHasABumpInMotion) {
               drive.damping = 40;
             }
             Simulation simulation(b.scene);
-            run(simulation, 1.5);
+            run_for(simulation, 1.5);
             Mode before = Mode::Position;
             for (const Mode mode :
                  {Mode::Velocity, Mode::Effort, Mode::Position, Mode::Effort, Mode::Velocity, Mode::Position}) {
@@ -181,7 +182,7 @@ TEST(ServoModes, NoPairOfModesHasABumpInMotion) {
                     << scheme << has_integral << sample_time << delay << is_elastic << to_string(before) << " to "
                     << to_string(mode);
               }
-              run(simulation, 0.05);
+              run_for(simulation, 0.05);
               before = mode;
             }
           }
@@ -192,14 +193,14 @@ TEST(ServoModes, SwitchingWithoutAnIntegralMovesTheSetPoint) {
   SceneBuilder b = block_on_rail();
   b.scene.servos[0].ki = b.scene.servos[0].other_modes[0].ki = 0;
   Simulation simulation(b.scene);
-  run(simulation, 8);
+  run_for(simulation, 8);
   const double rest = 0.25 + kLoad / 800;
   EXPECT_NEAR(simulation.position(0), rest, kRest);
   for (const Mode mode : {Mode::Velocity, Mode::Position, Mode::Effort, Mode::Position}) {
     simulation.switch_mode(0, mode);
     const double expected = mode == Mode::Velocity ? -kLoad / 60 : mode == Mode::Effort ? -kLoad : 0.25;
     EXPECT_NEAR(simulation.set_point(0), expected, 1e-4 * kLoad) << to_string(mode);
-    run(simulation, 0.5);
+    run_for(simulation, 0.5);
     EXPECT_NEAR(simulation.effort(0), -kLoad, 1e-4) << to_string(mode);
     EXPECT_NEAR(simulation.position(0), rest, 1e-6) << to_string(mode);
   }
@@ -209,9 +210,9 @@ TEST(ServoModes, SwitchingWithoutAnIntegralMovesTheSetPoint) {
 TEST(ServoModes, SwitchedOffItTakesOverNothing) {
   for (const double ki : {0.0, 12000.0}) {
     Simulation simulation(sliding_block(ki).scene);
-    run(simulation, 1);
+    run_for(simulation, 1);
     simulation.switch_servo(0, false);
-    run(simulation, 0.1);
+    run_for(simulation, 0.1);
     const double position = simulation.position(0);
     simulation.switch_mode(0, Mode::Position);
     EXPECT_EQ(simulation.set_point(0), position);
@@ -226,11 +227,11 @@ TEST(ServoModes, SwitchingIsNoBumpBesideACommandThatIsCut) {
   b.scene.initial_joints.push_back({"rail", 0.25, 0, {}});
   Simulation simulation(b.scene);
   simulation.command_effort(0, -20 * kLoad);
-  run(simulation, 8);
+  run_for(simulation, 8);
   const double rest = simulation.position(0), given = simulation.effort(0);
   for (const Mode mode : {Mode::Velocity, Mode::Effort, Mode::Position}) {
     simulation.switch_mode(0, mode);
-    run(simulation, 0.1);
+    run_for(simulation, 0.1);
     EXPECT_NEAR(simulation.effort(0), given, 1e-4);
     EXPECT_NEAR(simulation.position(0), rest, 1e-6);
   }
@@ -240,25 +241,25 @@ TEST(ServoModes, EachTakesSetPointsOfItsOwn) {
   Simulation simulation(block_on_rail().scene);
   simulation.switch_mode(0, Mode::Velocity);
   simulation.command_set_point(0, 0.1);
-  run(simulation, 3);
+  run_for(simulation, 3);
   EXPECT_NEAR(simulation.velocity(0), 0.1, kRest);
   const double begin = simulation.position(0);
-  run(simulation, 1);
+  run_for(simulation, 1);
   EXPECT_NEAR(simulation.position(0) - begin, 0.1, kRest);
   simulation.switch_mode(0, Mode::Effort);
   simulation.command_set_point(0, 3 - kLoad);  // 3 N remain to accelerate the block
   const double rate = simulation.velocity(0);
-  run(simulation, 1);
+  run_for(simulation, 1);
   EXPECT_NEAR(simulation.velocity(0) - rate, 3 / kMass, kRest);
   const double there = simulation.position(0);
   simulation.switch_mode(0, Mode::Position);
   EXPECT_EQ(simulation.set_point(0), there);
-  run(simulation, 8);
+  run_for(simulation, 8);
   EXPECT_NEAR(simulation.position(0), there, 1e-6);
   simulation.switch_mode(0, Mode::Velocity);
   simulation.release_set_point(0);
   EXPECT_EQ(simulation.servo_mode(0), Mode::Position);
-  run(simulation, 8);
+  run_for(simulation, 8);
   EXPECT_NEAR(simulation.position(0), 0.25, 1e-6) << "as the scene has it";
 }
 
@@ -266,15 +267,15 @@ TEST(ServoModes, AreAPartOfTheState) {
   Simulation simulation(block_on_rail().scene), other(block_on_rail().scene);
   simulation.switch_mode(0, Mode::Velocity);
   simulation.command_set_point(0, 0.3, 0.2);
-  run(simulation, 0.1);
+  run_for(simulation, 0.1);
   const std::string file = std::filesystem::temp_directory_path() / "flexarm_servo_modes_test";
   write_checkpoint(simulation, file);
   read_checkpoint(other, file);
   std::filesystem::remove(file);
   EXPECT_EQ(other.servo_mode(0), Mode::Velocity);
   EXPECT_TRUE(same_bits(state_of(simulation), state_of(other)));
-  run(simulation, 0.1);
-  run(other, 0.1);
+  run_for(simulation, 0.1);
+  run_for(other, 0.1);
   EXPECT_NEAR(simulation.position(0), other.position(0), kRest);
   other.reset();
   EXPECT_EQ(other.servo_mode(0), Mode::Position);
@@ -293,13 +294,8 @@ TEST(ServoModes, WithoutAServoOrGainsItIsSaidWhatToWrite) {
   b.scene.servos[0].other_modes.clear();
   Simulation simulation(b.scene);
   const State before = state_of(simulation);
-  const auto told = [](Simulation& of, Mode mode) -> std::string {
-    try {
-      of.switch_mode(0, mode);
-      return "";
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
+  const auto told = [](Simulation& of, Mode mode) {
+    return refusal<std::invalid_argument>([&] { of.switch_mode(0, mode); });
   };
   EXPECT_EQ(told(simulation, Mode::Velocity),
             "the servo of 'rail' has no gains of mode 'velocity': write <gains mode=\"velocity\" kp=\"...\"/> into its "
@@ -333,7 +329,7 @@ TEST(MovingSetPoints, DoWhatAFunctionOfTheSceneDoes) {
         ASSERT_NEAR(commanded.position(0), function.position(0), 1e-9) << scheme << sample_time << " " << n;
       }
       EXPECT_NEAR(commanded.set_point(0), c0 + 0.5 * (c1 + 0.5 * c2), 1e-15);
-      run(commanded, 8);
+      run_for(commanded, 8);
       EXPECT_NEAR(commanded.position(0), c0 + 0.5 * (c1 + 0.5 * c2), 1e-6) << "it stays where the last one was";
     }
   Simulation simulation(block_on_rail().scene);

@@ -3,12 +3,11 @@
 #include <stdexcept>
 #include <string>
 
-#include <gtest/gtest.h>
-
 #include "math/pi.h"
 #include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
+#include "support/refusal.h"
+#include "support/runs.h"
 
 namespace flexarm::test {
 namespace {
@@ -81,9 +80,7 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
 // secants. These changes are small against the velocity itself.
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
   for (const Scheme& scheme : schemes()) {
-    SimulationOptions options;
-    options.scheme = std::string(scheme.name);
-    options.step = 1e-4;
+    const SimulationOptions options = test::options(std::string(scheme.name), 1e-4);
     for (const std::size_t probe : {0, 1}) {
       Simulation s(scene_, options);
       s.command_effort(0, 2);
@@ -151,9 +148,7 @@ TEST_F(SmallArm, RefusesNonsense) {
   EXPECT_THROW(s.natural_modes(0), std::invalid_argument);
   ASSERT_TRUE(s.step().converged);
 
-  SimulationOptions options;
-  options.scheme = "euler";
-  EXPECT_THROW(Simulation(scene_, options), ModelError);
+  EXPECT_THROW(Simulation(scene_, options("euler")), ModelError);
   for (const double step : {0.0, -1.0, double(NAN), double(INFINITY)}) {
     SimulationOptions bad;
     bad.step = step;
@@ -195,10 +190,7 @@ TEST(Simulation, MassWithoutMotionIsRefused) {
 }
 
 TEST(Simulation, OptionsOverrideTheScene) {
-  SimulationOptions options;
-  options.scheme = "newmark";
-  options.step = 0.0005;
-  const Simulation s(everything_scene().scene, options);
+  const Simulation s(everything_scene().scene, options("newmark", 0.0005));
   EXPECT_EQ(s.scheme(), "newmark");
   EXPECT_DOUBLE_EQ(s.step_size(), 0.0005);
 }
@@ -222,17 +214,6 @@ TEST(Simulation, MomentaAreThoseOfTheMotion) {
   EXPECT_NEAR(s.energies().kinetic, 0.5 * 2 * velocity.squaredNorm() + 0.5 * 3 * 16, 1e-12);
 }
 
-/// The message of the exception of type Error that `call` throws; empty if it throws none.
-template <class Error, class Call>
-std::string what_of(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST_F(SmallArm, SaysWhichIndexIsWrong) {
   Simulation s(scene_);
   const std::string links = "link 9: expected an index from 0 to 3",
@@ -240,19 +221,19 @@ TEST_F(SmallArm, SaysWhichIndexIsWrong) {
   std::vector<BeamPoint> points;
   AppliedWrench wrench;
   wrench.link = 9;
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.link_pose(9); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.tip_pose(9); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.beam_points(9, 0, points); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.section(9, 0); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.reaction(9); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.apply_wrenches({wrench}); }), links);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.position(9); }), coordinates);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.effort(9); }), coordinates);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.release_command(9); }), coordinates);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.release_set_point(9); }), coordinates);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.set_joint_state({{9, 0.0, {}}}); }), coordinates);
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.probe_pose(2); }), "probe 2: expected an index from 0 to 1");
-  EXPECT_EQ(what_of<std::out_of_range>([&] { s.sample(0); }), "sensor 0: there is none");
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.link_pose(9); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.tip_pose(9); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.beam_points(9, 0, points); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.section(9, 0); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.reaction(9); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.apply_wrenches({wrench}); }), links);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.position(9); }), coordinates);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.effort(9); }), coordinates);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.release_command(9); }), coordinates);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.release_set_point(9); }), coordinates);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.set_joint_state({{9, 0.0, {}}}); }), coordinates);
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.probe_pose(2); }), "probe 2: expected an index from 0 to 1");
+  EXPECT_EQ(refusal<std::out_of_range>([&] { s.sample(0); }), "sensor 0: there is none");
 }
 
 TEST_F(SmallArm, RefusesLessThanNoPointsBetweenNodes) {
@@ -260,9 +241,9 @@ TEST_F(SmallArm, RefusesLessThanNoPointsBetweenNodes) {
   const std::string expected = "between: expected a number of points >= 0, got -1";
   for (const std::size_t link : {1u, 2u}) {  // a rigid link and a flexible one
     std::vector<BeamPoint> points;
-    EXPECT_EQ(what_of<std::invalid_argument>([&] { s.beam_points(link, -1, points); }), expected);
+    EXPECT_EQ(refusal<std::invalid_argument>([&] { s.beam_points(link, -1, points); }), expected);
     EXPECT_TRUE(points.empty());
-    EXPECT_EQ(what_of<std::invalid_argument>([&] { s.undeformed_sections(link, -1); }), expected);
+    EXPECT_EQ(refusal<std::invalid_argument>([&] { s.undeformed_sections(link, -1); }), expected);
   }
 }
 
@@ -274,7 +255,7 @@ TEST_F(SmallArm, ExplainsNoResultOfAnotherScene) {
   EXPECT_FALSE(s.explain(result).empty()) << "the place need not be known";
   const auto expect_refused = [&](const StepResult::Place& place) {
     result.failure.place = place;
-    EXPECT_NE(what_of<std::invalid_argument>([&] { s.explain(result); }).find("not in this scene"), std::string::npos);
+    EXPECT_NE(refusal<std::invalid_argument>([&] { s.explain(result); }).find("not in this scene"), std::string::npos);
   };
   expect_refused({4, -1, -1, -1, Vector3::Zero()});
   expect_refused({-1, -1, 5, -1, Vector3::Zero()});
@@ -289,7 +270,7 @@ TEST_F(SmallArm, RefusesATimeForRecoveryThatIsNone) {
   for (const double time : {-1.0, double(NAN)}) {
     options.recovery_wall_time = time;
     EXPECT_NE(
-        what_of<ModelError>([&] { Simulation(scene_, options); }).find("recovery_wall_time: expected a time >= 0"),
+        refusal<ModelError>([&] { Simulation(scene_, options); }).find("recovery_wall_time: expected a time >= 0"),
         std::string::npos)
         << time;
   }

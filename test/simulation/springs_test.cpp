@@ -1,10 +1,9 @@
 // Tests springs between points of two links.
-#include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
 #include "flexarm/scene/point_spring.h"
-#include "flexarm/simulation/result_columns.h"
 #include "math/pi.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -109,15 +108,8 @@ TEST(PointSprings, KeepTheEnergyAccount) {
     b.scene.integrator.scheme = scheme;
     add_spring(b, "ball", {0, -0.1, 0}, "world", {1, 1, 1}, {}, 0.2);
     Simulation simulation(b.scene);
-    const auto account = [&] {
-      const Energies e = simulation.energies();
-      return e.total() + e.dissipated - e.work;
-    };
-    const double begin = account();
-    for (int n = 0; n < 500; ++n) {
-      ASSERT_TRUE(simulation.step().converged) << scheme;
-      ASSERT_NEAR(account(), begin, 1e-9 * begin) << scheme;
-    }
+    const double begin = energy_account(simulation);
+    run(simulation, 500, [&] { ASSERT_NEAR(energy_account(simulation), begin, 1e-9 * begin) << scheme; });
     EXPECT_GT(simulation.energies().dissipated, 1e-3);
   }
 }
@@ -129,7 +121,7 @@ TEST(PointSprings, KeepMomenta) {
   b.scene.joints[0].origin.position = {0.3, -0.2, 0.5};
   Simulation simulation(b.scene);
   const Vector3 momentum = simulation.momentum(), spin = simulation.angular_momentum();
-  for (int n = 0; n < 300; ++n) ASSERT_TRUE(simulation.step().converged);
+  run(simulation, 300);
   EXPECT_LE((simulation.momentum() - momentum).norm(), 1e-9 * momentum.norm());
   EXPECT_LE((simulation.angular_momentum() - spin).norm(), 1e-9 * spin.norm());
 }
@@ -139,9 +131,7 @@ TEST(PointSprings, AreSolvedInFewIterations) {
   for (const char* scheme : {"em0", "newmark", "m1"}) {
     SceneBuilder b = tied();
     b.scene.integrator.scheme = scheme;
-    SimulationOptions options;
-    options.reuse_factorisation = false;
-    Simulation simulation(b.scene, options);
+    Simulation simulation(b.scene, full_newton());
     int iterations = 0;
     for (int n = 0; n < 100; ++n) {
       const StepResult result = simulation.step();

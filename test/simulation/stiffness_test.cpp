@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "flexarm/simulation/simulation.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -33,10 +33,7 @@ double iterations_per_step(const SceneBuilder& builder, const SimulationOptions&
 }
 
 double iterations_per_step(const SceneBuilder& builder, const std::string& scheme, double step, int steps) {
-  SimulationOptions options;
-  options.scheme = scheme;
-  options.step = step;
-  return iterations_per_step(builder, options, steps);
+  return iterations_per_step(builder, options(scheme, step), steps);
 }
 
 class Stiffness : public ::testing::TestWithParam<const char*> {};
@@ -111,10 +108,7 @@ class UnfeltStiffness : public ::testing::TestWithParam<const char*> {};
 // should be the same, whatever the stiffness. One step in fifty may need one more, because it is just above the
 // tolerance. docs/notes/newton.md lists the schemes for which this does not hold.
 TEST_P(UnfeltStiffness, CostsNoIterations) {
-  SimulationOptions options;
-  options.scheme = GetParam();
-  options.step = 0.02;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton(test::options(GetParam(), 0.02));
   struct Case {
     const char* name;
     SceneBuilder (*scene)(double stretch);

@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include "flexarm/simulation/simulation.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -14,13 +13,6 @@ namespace {
 using scene::JointKind;
 
 constexpr double kStep = 1e-3, kLimit = 0.5;
-
-SimulationOptions options(const std::string& scheme) {
-  SimulationOptions out;
-  out.scheme = scheme;
-  out.step = kStep;
-  return out;
-}
 
 void start(SceneBuilder& b, const std::string& coordinate, double position, double velocity) {
   b.scene.initial_joints.push_back({coordinate, position, velocity, {}, true});
@@ -59,11 +51,7 @@ struct Watch {
 
 Watch watch(Simulation& simulation, double limit, int steps) {
   Watch out;
-  const auto balance = [&] {
-    const Energies e = simulation.energies();
-    return e.total() + e.dissipated - e.work;
-  };
-  const double begin = balance();
+  const double begin = energy_account(simulation);
   double scale = simulation.energies().total();
   for (int n = 0; n < steps; ++n) {
     const StepResult result = simulation.step();
@@ -72,7 +60,7 @@ Watch watch(Simulation& simulation, double limit, int steps) {
     out.deepest = std::max(out.deepest, std::abs(simulation.position(0)) - limit);
     out.halvings = std::max(out.halvings, result.halvings);
     scale = std::max(scale, std::abs(simulation.energies().work));
-    out.energy_defect = std::max(out.energy_defect, std::abs(balance() - begin) / scale);
+    out.energy_defect = std::max(out.energy_defect, std::abs(energy_account(simulation) - begin) / scale);
   }
   return out;
 }
@@ -86,7 +74,7 @@ class Stops : public ::testing::TestWithParam<const char*> {};
 TEST_P(Stops, HoldACarriageAtAnySpeed) {
   for (const double speed : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
     SCOPED_TRACE(speed);
-    Simulation simulation(carriage(speed).scene, options(GetParam()));
+    Simulation simulation(carriage(speed).scene, options(GetParam(), kStep));
     const double hit = kLimit / speed / kStep;  // time of the first hit, in steps
     const Watch seen = watch(simulation, kLimit, static_cast<int>(hit + std::min(2 * hit, 30.0)) + 2);
     EXPECT_LT(seen.deepest, 0.1 * 2 * kLimit);
@@ -103,7 +91,7 @@ TEST_P(Stops, HoldASliderAtAnySpeed) {
     for (const double speed : {0.1, 1.0, 8.0, 20.0, 50.0, 200.0}) {
       SCOPED_TRACE(fmt::format("{} m/s, {} elements", speed, elements));
       const double way = std::min(0.03 * speed, 4.0), length = 10;
-      Simulation simulation(rider(elements, length - way, speed).scene, options(GetParam()));
+      Simulation simulation(rider(elements, length - way, speed).scene, options(GetParam(), kStep));
       const Watch seen = watch(simulation, length, static_cast<int>(way / speed / kStep) + 30);
       EXPECT_LT(seen.deepest, 0.1 * length / elements);
       EXPECT_LE(seen.halvings, 14);
@@ -124,9 +112,7 @@ TEST_P(Stops, ThrowAnArmToAndFroWithinAStep) {
       scene::JointLimits{-kRange / 2, kRange / 2};
   b.scene.gravity.setZero();
   start(b, "hinge", 0, kSpeed);
-  SimulationOptions coarse = options(GetParam());
-  coarse.step = 0.01;
-  Simulation simulation(b.scene, coarse);
+  Simulation simulation(b.scene, options(GetParam(), 0.01));
   const double energy = simulation.energies().total();
   const StepResult first = simulation.step();
   ASSERT_TRUE(first.converged) << to_string(first.reason);
@@ -147,7 +133,7 @@ TEST(Stop, OfNewmarksFamily) {
   for (const char* scheme : {"newmark", "hht3"})
     for (const double speed : {0.1, 10.0, 100.0}) {
       SCOPED_TRACE(fmt::format("{} {}", scheme, speed));
-      Simulation simulation(carriage(speed).scene, options(scheme));
+      Simulation simulation(carriage(speed).scene, options(scheme, kStep));
       const Watch seen = watch(simulation, kLimit, static_cast<int>(kLimit / speed / kStep) + 30);
       EXPECT_LT(seen.deepest, 0.1 * 2 * kLimit);
       EXPECT_NEAR(-simulation.velocity(0) / speed, kRestitution, 0.1) << "of first order in the step";
@@ -163,13 +149,13 @@ TEST(Stop, GivesBackWhatTheSceneAsks) {
     SCOPED_TRACE(restitution);
     SceneBuilder b = carriage(1);
     b.scene.joints.back().limits->restitution = restitution;
-    Simulation joint(b.scene, options("em"));
+    Simulation joint(b.scene, options("em", kStep));
     EXPECT_LT(watch(joint, kLimit, 560).energy_defect, 1e-11);
     EXPECT_NEAR(-joint.velocity(0), restitution, kOfRestitution);
 
     SceneBuilder slide = rider(40, 9.9, 1);
     slide.scene.joints.back().slide->restitution = restitution;
-    Simulation ride(slide.scene, options("em"));
+    Simulation ride(slide.scene, options("em", kStep));
     watch(ride, 10, 160);
     EXPECT_NEAR(-ride.velocity(0), restitution, kOfRestitution);
   }
@@ -178,13 +164,13 @@ TEST(Stop, GivesBackWhatTheSceneAsks) {
 TEST(Stop, HoldsWhateverPresses) {
   SceneBuilder b = carriage(0);
   b.scene.efforts.push_back({"rail", TimeFunction::parse("0:0 0.1:1e6 1:1e6"), {}});
-  Simulation joint(b.scene, options("em"));
+  Simulation joint(b.scene, options("em", kStep));
   EXPECT_LT(watch(joint, kLimit, 300).deepest, 0.1 * 2 * kLimit);
   EXPECT_GT(joint.position(0), kLimit);
 
   SceneBuilder slide = rider(40, 10, 0);
   slide.scene.efforts.push_back({"ride", TimeFunction::parse("0:0 0.1:1e6 1:1e6"), {}});
-  Simulation slider(slide.scene, options("em"));
+  Simulation slider(slide.scene, options("em", kStep));
   EXPECT_LT(watch(slider, 10, 300).deepest, 0.1 * 10.0 / 40);
   EXPECT_GT(slider.position(0), 10);
 }
@@ -200,7 +186,7 @@ TEST(Stop, HoldsAnArmThatHasGrown) {
   b.joint("boom", JointKind::Prismatic, "sleeve", "weight", Vector3::Zero(), Vector3::UnitX());
   b.scene.motions.push_back({"boom", TimeFunction::parse("0:0.1 1:3 10:3"), {}});
   b.scene.efforts.push_back({"hinge", TimeFunction::parse("0:0 1.1:0 1.2:2000 10:2000"), {}});
-  Simulation simulation(b.scene, options("em"));
+  Simulation simulation(b.scene, options("em", kStep));
   double deepest = 0;
   for (int n = 0; n < 3000; ++n) {
     ASSERT_TRUE(simulation.step().converged);
@@ -218,7 +204,7 @@ TEST(Stop, DependsOnNoStep) {
     b.scene.contact_time = contact_time;
     b.scene.joints[0].limits->restitution = 1;
     for (const double step : {1e-3, 2.5e-4, 1e-4}) {
-      SimulationOptions finer = options("em");
+      SimulationOptions finer = options("em", kStep);
       finer.step = step;
       Simulation simulation(b.scene, finer);
       double deepest = 0, begin = 0, end = 0;
@@ -246,7 +232,7 @@ TEST(Stop, HasTheDeclaredStiffness) {
     b.scene.joints[0].damping = 2 * std::sqrt(2 * 4e5);
     start(b, "rail", kLimit, 0);
     b.scene.initial_joints.erase(b.scene.initial_joints.begin());
-    Simulation simulation(b.scene, options(scheme));
+    Simulation simulation(b.scene, options(scheme, kStep));
     simulation.command_effort(0, 40);
     for (int n = 0; n < 300; ++n) ASSERT_TRUE(simulation.step().converged);
     EXPECT_NEAR(simulation.position(0) - kLimit, 1e-4, 1e-4 * 8 * 1e-6 + 1e-12) << scheme;
@@ -257,7 +243,7 @@ TEST(Stop, OfNoRange) {
   SceneBuilder b = carriage(1);
   b.scene.joints[0].limits = scene::JointLimits{0, 0};
   b.scene.efforts.push_back({"rail", TimeFunction::parse("0:0 0.1:1000 0.2:-1000 1:-1000"), {}});
-  Simulation simulation(b.scene, options("em"));
+  Simulation simulation(b.scene, options("em", kStep));
   EXPECT_LT(watch(simulation, 0, 500).deepest, 1e-4) << "of the size of the mechanism";
 }
 
@@ -268,7 +254,7 @@ TEST(Stop, OfATravelThatFollowsAnAngle) {
   ride.axis = Vector3::UnitX();
   ride.ratio = 0.5;
   b.scene.initial_joints = {{"ride/1", 0, 100, {}, true}};
-  Simulation simulation(b.scene, options("em"));
+  Simulation simulation(b.scene, options("em", kStep));
   double deepest = 0;
   for (int n = 0; n < 100; ++n) {
     ASSERT_TRUE(simulation.step().converged);
@@ -292,7 +278,7 @@ TEST(Stop, NoneOfAMotionBeyondTheEnd) {
     const bool is_screw = rotation == JointKind::Screw;
     b.scene.motions.push_back(
         {is_screw ? "ride/1" : "ride", TimeFunction::parse(is_screw ? "0:0 1:2" : "0:9 1:11"), {}});
-    Simulation simulation(b.scene, options("em"));
+    Simulation simulation(b.scene, options("em", kStep));
     StepResult result;
     do result = simulation.step();
     while (result.converged && simulation.time() < 1);

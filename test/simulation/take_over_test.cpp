@@ -1,10 +1,8 @@
 // Tests that a simulation continues from the state of another simulation with other settings.
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
+#include "support/runs.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -12,7 +10,7 @@ namespace {
 
 Simulation after_steps(const scene::SceneDescription& scene, int steps) {
   Simulation simulation(scene);
-  for (int n = 0; n < steps; ++n) EXPECT_TRUE(simulation.step().converged);
+  run(simulation, steps);
   return simulation;
 }
 
@@ -31,19 +29,11 @@ void expect_same_motion(const Simulation& a, const Simulation& b) {
   }
 }
 
-double account(const Simulation& simulation) {
-  const Energies energies = simulation.energies();
-  return energies.total() - energies.work + energies.dissipated;
-}
-
 TEST(TakeOver, OfTheSameSettingsIsACopy) {
   Simulation from = after_steps(driven_scene().scene, 50);
   Simulation to(driven_scene().scene);
   to.take_over(from);
-  for (int n = 0; n < 50; ++n) {
-    ASSERT_TRUE(from.step().converged);
-    ASSERT_TRUE(to.step().converged);
-  }
+  run(from, 50), run(to, 50);
   // Kept factors of the tangent are not part of a state, so the motions agree only to within Newton's tolerance.
   for (std::size_t i = 0; i < from.coordinate_names().size(); ++i)
     EXPECT_NEAR(to.position(i), from.position(i), 1e-6) << from.coordinate_names()[i];
@@ -63,9 +53,9 @@ TEST(TakeOver, OtherSchemesAndStepsGoOnWithoutAJump) {
         to.take_over(from);
         SCOPED_TRACE(std::string(before) + " to " + after + " by " + std::to_string(factor));
         expect_same_motion(to, from);
-        EXPECT_NEAR(account(to), account(from), 1e-9 * (1 + std::abs(account(from))));
+        EXPECT_NEAR(energy_account(to), energy_account(from), 1e-9 * (1 + std::abs(energy_account(from))));
         EXPECT_EQ(state_of(to).wrenches.size(), 1u);
-        for (int n = 0; n < 20; ++n) ASSERT_TRUE(to.step().converged);
+        run(to, 20);
         EXPECT_NO_THROW(to.restore(to.snapshot()));
         to.reset();
         ASSERT_TRUE(to.step().converged) << "the scene's own start is there, too";
@@ -89,8 +79,8 @@ TEST(TakeOver, GravityAndGainsAreTheOtherOnes) {
   Simulation to(b.scene);
   to.take_over(from);
   EXPECT_EQ(to.position(0), from.position(0));
-  EXPECT_NEAR(account(to), account(from), 1e-9);
-  for (int n = 0; n < 5000; ++n) ASSERT_TRUE(to.step().converged);
+  EXPECT_NEAR(energy_account(to), energy_account(from), 1e-9);
+  run(to, 5000);
   EXPECT_NEAR(to.position(0), -10.0 / 1000, 1e-6);
 }
 

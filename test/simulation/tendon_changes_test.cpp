@@ -2,15 +2,12 @@
 #include <cmath>
 #include <string>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "flexarm/model/model_error.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/payloads.h"
-#include "flexarm/simulation/result_columns.h"
-#include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
+#include "support/refusal.h"
+#include "support/runs.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 namespace {
@@ -19,48 +16,22 @@ constexpr double kRadius = 0.1;  // of drums [m]
 
 scene::SceneDescription line_scene(const std::string& parts, const std::string& scheme = "em",
                                    const std::string& more = "") {
-  const scene::ReadResult read = scene::read_scene_text(
-      fmt::format(R"(<robot name="r"> <link name="world"/> {} <simulation> <gravity xyz="0 0 -9.81"/>
-                       <integrator scheme="{}" step="1e-3" tolerance="1e-12"/> {} </simulation> </robot>)",
-                  parts, scheme, more),
-      "lines.urdf");
-  for (const scene::Diagnostic& finding : read.diagnostics) ADD_FAILURE() << finding.text();
-  return read.scene.value();
+  return scene_of_parts(parts, gravity({0, 0, -9.81}) + more, 1e-3, scheme);
 }
 
-const char* const kInertial = R"(<inertial> <mass value="{}"/>
-  <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/> </inertial>)";
-
-std::string body_with_mass(const std::string& name, double mass) {
-  return fmt::format("<link name=\"{}\">", name) + fmt::format(kInertial, mass) + "</link>";
+std::string small_body(const std::string& name, double mass) {
+  return body(name, mass, Vector3::Constant(0.001));
 }
 
 std::string free_body(const std::string& name, double mass, const std::string& at) {
-  return fmt::format(R"(<joint name="{0}_flight" type="floating"> <parent link="world"/> <child link="{0}"/>
-                          <origin xyz="{1}"/> </joint>)",
-                     name, at) +
-         body_with_mass(name, mass);
+  return joint(name + "_flight", "floating", "world", name, "<origin xyz='" + at + "'/>") + small_body(name, mass);
 }
 
 /// A drum that turns about the y axis at the world's origin. Its line leaves it downwards at x = 0.1 m.
 std::string drum() {
-  return R"(<joint name="drum" type="continuous"> <parent link="world"/> <child link="drum"/> <axis xyz="0 1 0"/> </joint>)" +
-         body_with_mass("drum", 2);
+  return joint("drum", "continuous", "world", "drum", "<axis xyz='0 1 0'/>") + small_body("drum", 2);
 }
 const char* const kOnDrum = R"(<pulley link="drum" axis="0 1 0" radius="0.1" grips="true"/>)";
-
-double value_of(const Simulation& simulation, const std::string& column) {
-  return ResultColumns(simulation, ResultColumns::Solver::Without, {column}).row(simulation, {}).back();
-}
-
-double line_account(const Simulation& simulation) {
-  const Energies now = simulation.energies();
-  return now.total() + now.dissipated - now.work;
-}
-
-void go_on(Simulation& simulation, int steps) {
-  for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation.step().converged) << n;
-}
 
 /// A line between the drum and a point of the world 2 m below it.
 const std::string kHeldLine =
@@ -70,30 +41,30 @@ const std::string kHeldLine =
 
 TEST(TendonChanges, DrumsWindUpWholeTurnsWhenTheyAreSet) {
   Simulation s(line_scene(kHeldLine));
-  double start = line_account(s);
+  double start = energy_account(s);
   for (const double angle : {-6 * kPi, 40.0, 0.0, -0.6 * kPi, 0.6 * kPi, -6 * kPi}) {
     s.set_joint_state({{0, angle, 0.0}});
     const double rest = 2 + kRadius * angle;
-    EXPECT_NEAR(value_of(s, "tendon/line/tension"), rest < 2 ? 10 * (2 - rest) / rest : 0, 1e-10) << angle;
-    EXPECT_NEAR(value_of(s, "tendon/line/length"), 2, 1e-14);
+    EXPECT_NEAR(column(s, "tendon/line/tension"), rest < 2 ? 10 * (2 - rest) / rest : 0, 1e-10) << angle;
+    EXPECT_NEAR(column(s, "tendon/line/length"), 2, 1e-14);
   }
-  EXPECT_NEAR(line_account(s), start, 1e-10);  // what is set from outside counts as work
-  go_on(s, 100);
-  EXPECT_NEAR(line_account(s), start, 1e-9);
+  EXPECT_NEAR(energy_account(s), start, 1e-10);  // what is set from outside counts as work
+  run(s, 100);
+  EXPECT_NEAR(energy_account(s), start, 1e-9);
 }
 
 TEST(TendonChanges, WhatHasSlippedStays) {
   const std::string parts = free_body("ball", 1, "1 0 -1") + R"(<tendon name="line" ea="2000">
       <via link="world" at="-1 0 0"/> <via link="world" friction="0.3"/> <via link="ball"/> </tendon>)";
   Simulation s(line_scene(parts));
-  go_on(s, 700);
-  const double first = value_of(s, "tendon/line/tension"), last = value_of(s, "tendon/line/last_tension");
+  run(s, 700);
+  const double first = column(s, "tendon/line/tension"), last = column(s, "tendon/line/last_tension");
   ASSERT_GT(std::abs(last - first), 0.01 * last);
   ASSERT_GT(s.energies().dissipated, 1e-3);  // it has slipped
   const double strain = s.energies().strain;
   const auto expect_same = [&](const Simulation& other) {
-    EXPECT_NEAR(value_of(other, "tendon/line/tension"), first, 1e-9 * last);
-    EXPECT_NEAR(value_of(other, "tendon/line/last_tension"), last, 1e-9 * last);
+    EXPECT_NEAR(column(other, "tendon/line/tension"), first, 1e-9 * last);
+    EXPECT_NEAR(column(other, "tendon/line/last_tension"), last, 1e-9 * last);
     EXPECT_NEAR(other.energies().strain, strain, 1e-9 * strain);
   };
   Simulation other(line_scene(parts, "newmark"));
@@ -107,43 +78,42 @@ TEST(TendonChanges, APayloadThatComesAndGoesLeavesTheLine) {
   Simulation s(line_scene(
       drum() + free_body("hook", 1, "0.1 0 -2") + free_body("load", 3, "0.1 0.2 -6") +
       fmt::format(R"(<tendon name="line" ea="2e4" damping="20"> {} <via link="hook"/> </tendon>)", kOnDrum)));
-  go_on(s, 900);  // the drum is turned by the falling hook, several times
+  run(s, 900);  // the drum is turned by the falling hook, several times
   ASSERT_GT(std::abs(s.position(0)), 10.0);
-  const double start = line_account(s), tension = value_of(s, "tendon/line/tension");
+  const double start = energy_account(s), tension = column(s, "tendon/line/tension");
   ASSERT_GT(tension, 0.5);
   const auto expect_continued = [&](double expected) {
-    EXPECT_NEAR(value_of(s, "tendon/line/length"), 2 + kRadius * s.position(0), 0.01);  // but for its stretch
-    EXPECT_NEAR(value_of(s, "tendon/line/tension"), expected, 1e-6 * expected);
-    EXPECT_NEAR(line_account(s), start, 1e-8);
+    EXPECT_NEAR(column(s, "tendon/line/length"), 2 + kRadius * s.position(0), 0.01);  // but for its stretch
+    EXPECT_NEAR(column(s, "tendon/line/tension"), expected, 1e-6 * expected);
+    EXPECT_NEAR(energy_account(s), start, 1e-8);
   };
-  const double length = value_of(s, "tendon/line/length");
+  const double length = column(s, "tendon/line/length");
   attach(s, "load", "hook");
-  EXPECT_NEAR(value_of(s, "tendon/line/length"), length, 1e-12);
+  EXPECT_NEAR(column(s, "tendon/line/length"), length, 1e-12);
   // The damper's part has changed, since the hook's velocity has.
-  go_on(s, 400);
-  const double before = value_of(s, "tendon/line/tension");
+  run(s, 400);
+  const double before = column(s, "tendon/line/tension");
   detach(s, "load");
   expect_continued(before);
-  go_on(s, 100);
-  EXPECT_NEAR(line_account(s), start, 1e-8);
+  run(s, 100);
+  EXPECT_NEAR(energy_account(s), start, 1e-8);
 }
 
 // The line is as long as at the start of the scene. In the scene that attaching makes, the ball starts 0.3 m farther
 // away.
 TEST(TendonChanges, AnAttachedBallDoesNotMeasureItsLineAnew) {
-  Simulation s(line_scene(R"(<joint name="slide" type="prismatic"> <parent link="world"/> <child link="carriage"/>
-                               <axis xyz="0 0 1"/> <limit lower="-1" upper="1" effort="0" velocity="0"/> </joint>)" +
-                          body_with_mass("carriage", 1) + free_body("ball", 1, "0 0 -2") +
+  Simulation s(line_scene(rail("slide", "carriage", "0 0 1") + small_body("carriage", 1) +
+                          free_body("ball", 1, "0 0 -2") +
                           R"(<tendon name="line" ea="400"> <via link="world"/> <via link="ball"/> </tendon>)"));
   s.set_joint_state({{*s.find_coordinate("ball_flight/z"), -0.3, 0.0}});
-  EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
+  EXPECT_NEAR(column(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
   attach(s, "ball", "carriage");
-  EXPECT_NEAR(value_of(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
-  const double start = line_account(s);
-  go_on(s, 100);
+  EXPECT_NEAR(column(s, "tendon/line/tension"), 400 * 0.3 / 2, 1e-10);
+  const double start = energy_account(s);
+  run(s, 100);
   detach(s, "ball");
-  go_on(s, 200);
-  EXPECT_NEAR(line_account(s), start, 1e-9);
+  run(s, 200);
+  EXPECT_NEAR(energy_account(s), start, 1e-9);
 }
 
 TEST(TendonChanges, AFailureNamesTheLine) {
@@ -162,8 +132,8 @@ TEST(TendonChanges, AFailureNamesTheLine) {
        R"(<tendon name="line" ea="1"> <via link="world" at="1 0 -1.5"/> <pulley link="world" at="0 0 -1.5" axis="0 1 0"
              radius="0.2" side="left" friction="0.1"/> <via link="ball"/> </tendon>)"}) {
     const std::string text = explained(tendon);
-    EXPECT_NE(text.find("not finite: at <tendon> 'line'"), std::string::npos) << text;
-    EXPECT_NE(text.find("guides outside the rims"), std::string::npos) << text;
+    expect_contains(text, "not finite: at <tendon> 'line'");
+    expect_contains(text, "guides outside the rims");
   }
 }
 
@@ -171,10 +141,8 @@ TEST(TendonChanges, AFailureNamesTheLine) {
 // The second of two lines without names is the first one afterwards.
 TEST(TendonChanges, LinesWithoutNamesAreNotMistaken) {
   const auto winch_drum = [](const std::string& name, const std::string& y) {
-    return fmt::format(R"(<joint name="{0}" type="continuous"> <parent link="world"/> <child link="{0}"/>
-                            <origin xyz="0 {1} 0"/> <axis xyz="0 1 0"/> </joint>)",
-                       name, y) +
-           body_with_mass(name, 2) +
+    return joint(name, "continuous", "world", name, "<origin xyz='0 " + y + " 0'/><axis xyz='0 1 0'/>") +
+           small_body(name, 2) +
            fmt::format(R"(<tendon ea="10"> <pulley link="{0}" axis="0 1 0" radius="0.1" grips="true"/>
                             <via link="world" at="0.1 {1} -2"/> </tendon>)",
                        name, y);
@@ -192,7 +160,7 @@ TEST(TendonChanges, LinesWithoutNamesOnTheSameBodiesKeepTheirOwn) {
                                 friction="{1}"/> <via link="ball"/> </tendon>)";
   Simulation s(line_scene(free_body("ball", 1, "1 0 -1") + free_body("other", 1, "9 0 0") +
                           fmt::format(line, 0.0, 0.1) + fmt::format(line, 0.5, 0.6)));
-  go_on(s, 700);
+  run(s, 700);
   ASSERT_GT(s.energies().dissipated, 1e-3);  // they have slipped
   const double strain = s.energies().strain;
   remove(s, "other");
@@ -200,9 +168,7 @@ TEST(TendonChanges, LinesWithoutNamesOnTheSameBodiesKeepTheirOwn) {
 }
 
 TEST(TendonChanges, AnEmptyLineFailsAlsoWhereNothingMoves) {
-  Simulation s(line_scene(R"(<joint name="rail" type="prismatic"> <parent link="world"/> <child link="mass"/>
-                               <axis xyz="1 0 0"/> <limit lower="-9" upper="9" effort="0" velocity="0"/> </joint>)" +
-                              body_with_mass("mass", 1) +
+  Simulation s(line_scene(rail("rail", "mass", "1 0 0") + small_body("mass", 1) +
                               R"(<tendon name="line" ea="10" rest_length="1-10*t"> <via link="world" at="0 0 1"/>
                                <via link="mass"/> </tendon>)",
                           "em", "<motion joint=\"rail\" position=\"1\"/>"));
@@ -223,13 +189,8 @@ TEST(TendonChanges, FrictionHasNoBackwardSteps) {
   };
   EXPECT_NO_THROW(Simulation(line_scene(with(""), "em4")));
   EXPECT_NO_THROW(Simulation(line_scene(with(" friction=\"0.1\""), "em")));
-  try {
-    Simulation refused(line_scene(with(" friction=\"0.1\""), "em4"));
-    ADD_FAILURE() << "em4 takes friction";
-  } catch (const ModelError& error) {
-    EXPECT_NE(std::string(error.what()).find("scheme 'em4' has no <tendon> with friction"), std::string::npos)
-        << error.what();
-  }
+  expect_contains(refusal<ModelError>([&] { Simulation(line_scene(with(" friction=\"0.1\""), "em4")); }),
+                  "scheme 'em4' has no <tendon> with friction");
 }
 
 namespace {
@@ -254,20 +215,19 @@ TEST(TendonChanges, AModelWithLinesIsSpawnedAnywhere) {
   for (const std::string prefix : {"a_", "b_"})
     spawn(s, hoisted_pendulum(),
           {{{prefix == "a_" ? 4.0 : -3.0, 1, 2}, turn}, Vector3::Zero(), Vector3::Zero(), prefix});
-  go_on(alone, 300);
-  go_on(s, 300);
+  run(alone, 300);
+  run(s, 300);
   for (const std::string prefix : {"a_", "b_"}) {
     for (const std::string name : {"rope", "stay"})
-      EXPECT_NEAR(value_of(s, "tendon/" + prefix + name + "/tension"), value_of(alone, "tendon/" + name + "/tension"),
-                  1e-7)
+      EXPECT_NEAR(column(s, "tendon/" + prefix + name + "/tension"), column(alone, "tendon/" + name + "/tension"), 1e-7)
           << prefix << name;
-    EXPECT_NEAR(value_of(s, "spring/" + prefix + "side/length"), value_of(alone, "spring/side/length"), 1e-9);
-    EXPECT_NEAR(value_of(s, "joint/" + prefix + "hoist/position"), value_of(alone, "joint/hoist/position"), 1e-9);
+    EXPECT_NEAR(column(s, "spring/" + prefix + "side/length"), column(alone, "spring/side/length"), 1e-9);
+    EXPECT_NEAR(column(s, "joint/" + prefix + "hoist/position"), column(alone, "joint/hoist/position"), 1e-9);
   }
   remove(s, "a_bob");  // its lines and their winch go with it
-  EXPECT_NEAR(value_of(s, "joint/b_hoist/position"), value_of(alone, "joint/hoist/position"), 1e-9);
+  EXPECT_NEAR(column(s, "joint/b_hoist/position"), column(alone, "joint/hoist/position"), 1e-9);
   for (const std::string& name : s.coordinate_names()) EXPECT_NE(name, "a_hoist");
-  go_on(s, 10);
+  run(s, 10);
 }
 
 }  // namespace flexarm::test

@@ -4,14 +4,12 @@
 #include <cstdio>
 #include <limits>
 
-#include <gtest/gtest.h>
-
 #include "flexarm/simulation/checkpoint.h"
 #include "schemes/scheme.h"
 #include "simulation/body_with_beam.h"
 #include "simulation/everything_scene.h"
-#include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/runs.h"
 
 namespace flexarm::test {
 namespace {
@@ -21,7 +19,7 @@ using scene::JointKind;
 const Vector3 kPoint(0.5, 0.1, -0.2), kForce(1, 2, -0.5), kMoment(0.1, -0.2, 0.05);
 
 AppliedWrench wrench_on(const Simulation& simulation, const std::string& link, const Vector3& at, bool follows) {
-  return {index_of(simulation, link), at, {kForce, kMoment}, follows};
+  return {link_of(simulation, link), at, {kForce, kMoment}, follows};
 }
 
 class Wrenches : public ::testing::TestWithParam<std::string> {};
@@ -30,8 +28,7 @@ class Wrenches : public ::testing::TestWithParam<std::string> {};
 TEST_P(Wrenches, ActAsLoadsOfTheScene) {
   for (const bool follows : {false, true})
     for (const auto& [link, at] : {std::pair<std::string, Vector3>{"body", kPoint}, {"beam", {0.75, 0, 0}}}) {
-      SimulationOptions options;
-      options.scheme = GetParam();
+      const SimulationOptions options = test::options(GetParam());
       SceneBuilder loaded = body_with_beam();
       loaded.load(link, at, kForce, kMoment, "1", follows ? scene::LoadFrame::Follower : scene::LoadFrame::World);
       Simulation expected(loaded.scene, options), simulation(body_with_beam().scene, options);
@@ -51,8 +48,7 @@ TEST_P(Wrenches, ActAsLoadsOfTheScene) {
 // Wrenches on one link add up, each call replaces the wrenches of the last one, and without any the motion is the
 // original one.
 TEST_P(Wrenches, AddUpAndGo) {
-  SimulationOptions options;
-  options.scheme = GetParam();
+  const SimulationOptions options = test::options(GetParam());
   Simulation once(body_with_beam().scene, options), twice(body_with_beam().scene, options),
       none(body_with_beam().scene, options);
   AppliedWrench wrench = wrench_on(once, "body", kPoint, false);
@@ -78,9 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Wrenches, ::testing::Values("em", "em0", "std"
 TEST(AppliedWrenches, JumpInNewmarksFamily) {
   for (const char* scheme : {"newmark", "hht2"}) {
     const auto error = [&](int steps) {
-      SimulationOptions options;
-      options.scheme = scheme;
-      options.step = 0.1 / steps;
+      const SimulationOptions options = test::options(scheme, 0.1 / steps);
       SceneBuilder loaded = body_with_beam();
       loaded.load("body", kPoint, kForce, kMoment);
       Simulation expected(loaded.scene, options), simulation(body_with_beam().scene, options);
@@ -96,8 +90,7 @@ TEST(AppliedWrenches, JumpInNewmarksFamily) {
 // Wrenches are part of the state: a restored run continues with them, and a reset removes them.
 TEST(AppliedWrenches, AreKeptInTheState) {
   const std::string path = ::testing::TempDir() + "flexarm_wrenches_test.state";
-  SimulationOptions options;
-  options.reuse_factorisation = false;
+  const SimulationOptions options = full_newton();
   Simulation simulation(everything_scene().scene, options), resumed(everything_scene().scene, options);
   const State initial = state_of(simulation);
   simulation.apply_wrenches(
@@ -138,7 +131,7 @@ TEST(AppliedWrenches, ThatCannotActAreRefused) {
   bad.wrench.force.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(simulation.apply_wrenches({good, bad}), std::invalid_argument);
   bad = good;
-  bad.link = index_of(simulation, "world");
+  bad.link = link_of(simulation, "world");
   EXPECT_THROW(simulation.apply_wrenches({bad}), std::invalid_argument);
   bad.link = 99;
   EXPECT_THROW(simulation.apply_wrenches({bad}), std::out_of_range);

@@ -3,15 +3,12 @@
 
 #include <limits>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "building/model_builder.h"
 #include "elements/random_element.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "math/lanes.h"
 #include "solver/tree_tangent.h"
 #include "support/dense_solution.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
@@ -19,13 +16,11 @@ namespace {
 constexpr int kElements = 6;  // a pack and half a pack
 
 Model cantilever(int order) {
-  const std::string text = fmt::format(
-      R"(<robot name="cantilever"><link name="world"/><joint name="clamp" type="fixed"><parent link="world"/>)"
-      R"(<child link="beam"/></joint><link name="beam"><beam elements="{}" order="{}"><centerline><line to="6 0 0"/>)"
-      R"(</centerline><section ea="1" ga2="1" ga3="1" gj="1" ei2="1" ei3="1" mass="1" j1="1" j2="1" j3="1"/></beam></link>)"
-      R"(</robot>)",
-      kElements, order);
-  return build_model(*scene::read_scene_text(text, "cantilever.urdf").scene);
+  return build_model(test::scene_of(test::robot(
+      test::joint("clamp", "fixed", "world", "beam") +
+      fmt::format(R"(<link name="beam"><beam elements="{}" order="{}"><centerline><line to="6 0 0"/></centerline>
+        <section ea="1" ga2="1" ga3="1" gj="1" ei2="1" ei3="1" mass="1" j1="1" j2="1" j3="1"/></beam></link>)",
+                  kElements, order))));
 }
 
 /// A tangent of random numbers, in which half of the diagonal blocks comes from other sources than elements, and its

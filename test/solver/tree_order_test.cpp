@@ -4,33 +4,26 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "building/model_builder.h"
-#include "flexarm/scene/urdf_reader.h"
+#include "support/scene_text.h"
 
 namespace flexarm {
 namespace {
 
+using namespace test;
+
 /// Returns a table on `legs` rigid legs. Each leg is hinged to the ground and to the table.
 std::string table_on(int legs) {
-  const std::string inertial =
-      R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
-  std::string text = R"(<robot name="table"><link name="world"/>)";
-  for (int i = 0; i < legs; ++i)
+  const std::string across = "<axis xyz='0 1 0'/>";
+  std::string text;
+  for (int i = 0; i < legs; ++i) {
+    const std::string leg = fmt::format("leg{}", i), at = fmt::format("xyz='{} 0 0'/>", i);
     text +=
-        fmt::format(R"(<link name="leg{0}">{1}</link><joint name="foot{0}" type="continuous"><parent link="world"/>)"
-                    R"(<child link="leg{0}"/><origin xyz="{0} 0 0"/><axis xyz="0 1 0"/></joint>)",
-                    i, inertial);
-  text += fmt::format(R"(<link name="table">{}</link><joint name="head0" type="continuous"><parent link="leg0"/>)"
-                      R"(<child link="table"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/></joint>)",
-                      inertial);
-  for (int i = 1; i < legs; ++i)
-    text += fmt::format(R"(<loop_joint name="head{0}" type="continuous"><parent link="leg{0}"/><child link="table"/>)"
-                        R"(<origin xyz="0 0 1"/><child_origin xyz="{0} 0 0"/><axis xyz="0 1 0"/></loop_joint>)",
-                        i);
-  return text + "</robot>";
+        body(leg, 1) + joint(fmt::format("foot{}", i), "continuous", "world", leg, "<origin " + at + across) +
+        joint(fmt::format("head{}", i), "continuous", leg, "table",
+              "<origin xyz='0 0 1'/>" + (i > 0 ? "<child_origin " + at : "") + across, i > 0 ? "loop_joint" : "joint");
+  }
+  return robot(text + body("table", 1));
 }
 
 /// The number of scalars that ride, over all parts, and that of the largest border. `unexpected`: the largest number of
@@ -40,8 +33,7 @@ struct Riders {
 };
 
 Riders riders_of(const std::string& text) {
-  const scene::ReadResult read = scene::read_scene_text(text, "riders.urdf");
-  const Model model = build_model(read.scene.value());
+  const Model model = build_model(scene_of(text));
   const DegreesOfFreedom dof(model);
   const TreeOrder order(model, dof);
   Riders out;
@@ -71,22 +63,21 @@ TEST(TreeOrder, VariablesRideOnlyWhereTheyPass) {
 /// Returns a beam with a body at the end of each element, and a line over all bodies.
 std::string beam_with_line(int elements, double friction = 0) {
   std::string text = fmt::format(
-      R"(<robot name="line"><link name="world"/><link name="rod"><beam elements="{}"><centerline><line to="1 0 0"/>
+      R"(<link name="rod"><beam elements="{}"><centerline><line to="1 0 0"/>
          </centerline><section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/>
-         </beam></link><joint name="clamp" type="fixed"><parent link="world"/><child link="rod"/></joint>)",
+         </beam></link>)",
       elements);
+  text += joint("clamp", "fixed", "world", "rod");
   std::string guides;
   for (int i = 1; i <= elements; ++i) {
-    text += fmt::format(R"(<link name="disc{0}"><inertial><mass value="1"/>
-                           <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-                           <joint name="glue{0}" type="fixed"><parent link="rod"/><child link="disc{0}"/>
-                           <origin xyz="{1} 0 0"/></joint>)",
-                        i, static_cast<double>(i) / elements);
+    const std::string disc = fmt::format("disc{}", i);
+    text += body(disc, 1) + joint("of_" + disc, "fixed", "rod", disc,
+                                  fmt::format("<origin xyz='{} 0 0'/>", static_cast<double>(i) / elements));
     guides +=
         fmt::format(R"(<via link="disc{}" at="0 0 0.1" friction="{}"/>)", i, 1 < i && i < elements ? friction : 0);
   }
-  return text + R"(<tendon name="line" ea="1e3">)" + guides + R"(</tendon><winch name="hoist" tendon="line">
-    <drive rotor_inertia="1"/></winch></robot>)";
+  return robot(text + R"(<tendon name="line" ea="1e3">)" + guides + R"(</tendon><winch name="hoist" tendon="line">
+    <drive rotor_inertia="1"/></winch>)");
 }
 
 // Each piece of the line couples two neighbours, and the auxiliary variable couples all of them. Bodies that are
@@ -111,20 +102,16 @@ TEST(TreeOrder, ALineWithFrictionOverManyBodiesKeepsBordersSmall) {
   EXPECT_LE(forty.largest_border, 6 + 6 + 6 + 4 * 3);
 }
 
-constexpr const char* kSlider = R"(<robot name="slider"><link name="world"/>
-  <link name="rail"><beam elements="9" order="2"><centerline><line to="1 0 0"/></centerline>
-    <section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/></beam></link>
-  <link name="rider"><inertial><mass value="1"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-  <joint name="clamp" type="fixed"><parent link="world"/><child link="rail"/></joint>
-  <joint name="slide" type="floating"><parent link="rail"/><child link="rider"/><slide start="0.5"/></joint></robot>)";
+const std::string kSlider = robot(R"(<link name="rail"><beam elements="9" order="2"><centerline><line to="1 0 0"/>
+    </centerline><section ea="1e5" ga2="4e4" ga3="4e4" gj="20" ei2="30" ei3="30" mass="1" j1="1e-3" j2="5e-4" j3="5e-4"/>
+    </beam></link>)" + body("rider", 1) +
+                                  joint("clamp", "fixed", "world", "rail") +
+                                  joint("slide", "floating", "rail", "rider", "<slide start='0.5'/>"));
 
 // The front of a slider contains all elements of the slider's window as a whole. It passes on no more than the block of
 // one node.
 TEST(TreeOrder, TheWindowOfASliderIsOneFront) {
-  const scene::ReadResult read = scene::read_scene_text(kSlider, "slider.urdf");
-  ASSERT_TRUE(read.scene);
-  const Model model = build_model(*read.scene);
+  const Model model = build_model(scene_of(kSlider));
   const DegreesOfFreedom dof(model);
   TreeOrder order(model, dof);
   const auto slider = std::find_if(model.joints.begin(), model.joints.end(),

@@ -4,13 +4,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <string>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
+#include "support/runs.h"
+#include "support/scene_text.h"
 
 namespace flexarm::test {
 
@@ -28,22 +24,18 @@ inline scene::SceneDescription boom_scene(double angle, const std::string& cylin
   if (parts.barrel_mass > 0)
     masses += fmt::format("<barrel mass='{}' length='{}' radius='{}'/>", parts.barrel_mass, kPartLength, kBarrelRadius);
   if (parts.rod_mass > 0) masses += fmt::format("<rod mass='{}' length='{}'/>", parts.rod_mass, kPartLength);
-  const scene::ReadResult read = scene::read_scene_text(
-      fmt::format(R"(<robot name='boom'>
+  return scene_of(fmt::format(R"(<robot name='boom'>
   <link name='world'/>
-  <link name='boom'><inertial><origin xyz='0.5 0 0'/><mass value='10'/>
-    <inertia ixx='0.01' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>
+  {}
   <joint name='hinge' type='continuous'><parent link='world'/><child link='boom'/><axis xyz='0 -1 0'/></joint>
   <cylinder name='lift' from='world' from_at='0.3 0 -0.3' to='boom' to_at='0.3 0 0'>{}{}</cylinder>
   <simulation><integrator scheme='em' step='1e-3'/>
     {}{}
   </simulation>
 </robot>)",
-                  masses, cylinder, angle == 0 ? "" : fmt::format("<initial joint='hinge' position='{}'/>", angle),
-                  simulation),
-      "boom.urdf");
-  EXPECT_TRUE(read.scene) << scene::to_text(read.diagnostics);
-  return read.scene.value();
+                              body("boom", 10, {0.01, 1, 1}, {0.5, 0, 0}), masses, cylinder,
+                              angle == 0 ? "" : fmt::format("<initial joint='hinge' position='{}'/>", angle),
+                              simulation));
 }
 
 /// The same boom as a system with one degree of freedom, its angle.

@@ -1,20 +1,21 @@
-"""Reference for joints with play, written from section 11 of docs/notes/contact.md alone.
+"""Reference for joints with play, written from section 11 of docs/notes/contact.md alone, as tests for pytest.
 
-check_holes() checks that the work in holes is exact, check_socket() that no energy is lost over many hits,
-check_limit()
-how fast a joint with play tends to the joint without. run_crank() integrates the slider-crank of Flores and Ambrosio
-(Computers & Structures 82 (2004) 1359) with scipy, from event to event of the law. It prints the numbers that
-test/reference/clearance_test.cpp compares with. Run this file for all of them.
+They compute the numbers again that test/reference/clearance_test.cpp compares with: of a pendulum, and of the
+slider-crank of Flores and Ambrosio (Computers & Structures 82 (2004) 1359), which is integrated with scipy from event
+to event of the law.
 """
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from reference_beam import I3
 from reference_contact import gonzalez, shell_force
 from reference_contact_checks import Body, Contact, step, total
 from reference_contact_laws import damping_of
+from stated_numbers import stated_numbers
 
+STATED_IN = "reference/clearance_test.cpp"
 
 # ---------------------------------------------------------------- holes
 
@@ -30,36 +31,34 @@ def cylinder_gap(y, radius):
     return value, np.append(gradient, 0)
 
 
-def check_holes():
-    rng, worst, across = np.random.default_rng(2), 0.0, 0
+def test_work_in_holes_is_exact():
+    rng = np.random.default_rng(2)
     for _ in range(2000):
         y0, y1 = rng.uniform(-1, 1, size=(2, 3))
         for gap in (ball_gap, cylinder_gap):
             g0, g1 = gap(y0, 0.8)[0], gap(y1, 0.8)[0]
             way = np.append(y1 - y0, np.zeros(3))
             gradient = gonzalez(np.append(gap(0.5 * (y0 + y1), 0.8)[1], np.zeros(3)), g1 - g0, way, 1.0)[:3]
-            worst = max(worst, abs(gradient @ (y1 - y0) - (g1 - g0)))
+            assert abs(gradient @ (y1 - y0) - (g1 - g0)) < 1e-14
             # The gap of a hole is concave, so it cannot be deeper between the ends of a chord.
             inside = min(gap(y0 + s * (y1 - y0), 0.8)[0] for s in np.linspace(0, 1, 21))
-            across += inside < min(g0, g1) - 1e-12
-    print(f"holes: work {worst:.1e}, chords that are deeper between their ends {across}")
+            assert inside >= min(g0, g1) - 1e-12
 
 
-def check_socket():
-    """Check the energy over 100 elastic hits of a free body that has a point in a socket of the world."""
+def test_hits_in_a_socket_keep_energy():
+    """A free body has a point in a socket of the world: 100 elastic hits."""
     law = dict(h=2e-3, k=1e5)
     arm = np.array([0.1, 0.05, -0.02])
     body = Body(1.0, [2e-3, 3e-3, 4e-3], (-arm, I3), np.array([0.5, 0.2, -0.1]), np.array([1.0, -2, 0.5]))
     contacts = [Contact(0, None, arm, lambda y0, y1, law: shell_force(y0, y1, 0.01, law), law)]
-    begin, hits, inside, worst = total([body])[0], 0, False, 0.0
+    begin, hits, inside = total([body])[0], 0, False
     while hits < 100:
         step([body], contacts, law["h"])
         deep = np.linalg.norm(body.pose[0] + body.pose[1] @ arm) - 0.01
         hits += deep > 0 and not inside
         inside = deep > 0
         stored = 0.5 * law["k"] * max(deep, 0) ** 2
-        worst = max(worst, abs(total([body])[0] + stored - begin))
-    print(f"socket: energy over 100 hits {worst / begin:.1e}")
+        assert abs(total([body])[0] + stored - begin) < 1e-12 * begin
 
 
 # ---------------------------------------------------------------- limit
@@ -94,10 +93,16 @@ def pendulum(play, stiffness, until, start=0.5):
     return solve_ivp(loose, (0, until), [*centre, start, 0, 0, 0], method="DOP853", rtol=1e-10, atol=1e-13).y[2, -1]
 
 
-def check_limit():
+def test_the_limit_is_the_joint_without_play():
     exact = pendulum(0, 0, 1.3)
-    errors = [abs(pendulum(play, 1e7, 1.3) - exact) for play in (4e-3, 2e-3, 1e-3, 5e-4)]
-    print(f"limit: errors {np.array(errors)}, orders {np.log2(np.array(errors[:-1]) / errors[1:]).round(3)}")
+    plays, errors = (4e-3, 2e-3, 1e-3), []
+    stated, with_play = np.split(np.array(stated_numbers(STATED_IN, "const double without = ", 4)), [1])
+    assert exact == pytest.approx(stated[0], abs=1e-9)
+    for play, expected in zip(plays, with_play):
+        angle = pendulum(play, 1e7, 1.3)
+        assert angle == pytest.approx(expected, abs=1e-9)
+        errors.append(abs(angle - exact))
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx(1, abs=0.01)
 
 
 # ---------------------------------------------------------------- slider-crank
@@ -193,19 +198,10 @@ class Crank:
         return pieces, hits
 
 
-def run_crank():
-    crank = Crank()
-    motions = [crank.run(3e-3, tolerance) for tolerance in (1e-9, 1e-12)]
-    for t, speed in motions[1][1]:
-        print(f"crank: hit at {1e3 * t:.6f} ms with {speed:.6f} m/s")
-    for t in (0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3):
-        coarse, fine = (next(sol for end, sol in pieces if end >= t - 1e-12)(t) for pieces, _ in motions)
-        print(f"crank: {1e3 * t} ms: " + " ".join(f"{number:.10g}" for number in fine)
-              + f"; tolerances differ by {abs(coarse - fine).max():.1e}")
-
-
-if __name__ == "__main__":
-    check_holes()
-    check_socket()
-    check_limit()
-    run_crank()
+def test_crank():
+    pieces, hits = Crank().run(3e-3, 1e-12)
+    assert len(hits) == 8
+    stated = stated_numbers(STATED_IN, "const double expected[][3] = ", 18)
+    for t, rod, slider in np.reshape(stated, (6, 3)):
+        found = next(sol for end, sol in pieces if end >= t - 1e-12)(t)
+        assert found[:2] == pytest.approx([rod, slider], abs=1e-9)

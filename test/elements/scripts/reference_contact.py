@@ -1,13 +1,10 @@
 """Contact over one step, written from the formulas of docs/notes/contact.md alone.
 
 Forces, tangents and discrete gradients to test the library against: dense numpy, not optimised. A pose is (position
-[m],
-rotation matrix to the world). Increments over a step are {displacement, tangent-scaled rotation}. Rows are
-{force [N], moment [N m]} on body A, then on body B, in world axes, conjugate to these increments. `y` is a point of A
-in
-B's frame. A local force acts on A, along B's axes. Run this file for all checks: reference_contact_checks.py checks
-that
-work and momenta are exact and that tangents are derivatives, reference_contact_laws.py what laws do over many steps.
+[m], rotation matrix to the world). Increments over a step are {displacement, tangent-scaled rotation}. Rows are {force
+[N], moment [N m]} on body A, then on body B, in world axes, conjugate to these increments. `y` is a point of A in B's
+frame. A local force acts on A, along B's axes. reference_contact_checks.py tests that work and momenta are exact and
+that tangents are derivatives, reference_contact_laws.py what laws do over many steps.
 """
 
 import numpy as np
@@ -405,11 +402,3 @@ def plane_force(y0, y1, normal, law):
     lost += kt * (memory @ (y1 - y0) - 0.5 * (memory @ memory - law["memory"] @ law["memory"]))
     by_y1 = np.outer(normal, by_y) - kt * (by_slip + np.outer(by_force, by_y))
     return force * normal - kt * memory, by_y1, memory, lost
-
-
-if __name__ == "__main__":
-    import reference_contact_checks
-    import reference_contact_laws
-
-    reference_contact_checks.run()
-    reference_contact_laws.run()

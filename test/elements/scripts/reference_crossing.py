@@ -5,12 +5,15 @@ Meier, Popp and Wall. One beam is clamped at both ends. A straight one is moved 
 vibrations. The example gives the end of the motion, and the position of node 8 there. This file finds it as the minimum
 of energy of the same elements, which are straight, with Reissner's strains at one point each. The penalty acts at the
 nearest point of each element, if this point is inside of the element. For the limit, the same penalty per length acts
-at
-nodes, over about one radius. Units are those of the example.
+at nodes, over about one radius. Units are those of the example. Tests for pytest of the numbers that
+test/reference/crossing_beams_test.cpp compares with.
 """
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
+
+from stated_numbers import stated_numbers
 
 LENGTH, RADIUS, PENALTY = 5.0, 0.3, 1e6
 FROM, TO = np.array([-2.5, 0, 0]), np.array([1.830127018922193, -2.5, 0])
@@ -114,15 +117,15 @@ class LowerBeam:
         return self.unknowns[round(PLACE * self.elements) - 1, :3]
 
 
-def run():
-    published = LowerBeam(19).displacement(15)
-    print("as published within", np.abs(published - PUBLISHED).max())
-    assert np.abs(published - PUBLISHED).max() < 1e-4
-    for elements, per_length in ((38, PENALTY / RADIUS), (76, PENALTY / RADIUS), (76, 9.734e6)):
-        beam = LowerBeam(elements, per_length)
-        moved = beam.displacement(10)
-        print(f"{elements} elements:", moved, "deepest", beam.penetrations(beam.nodes(beam.unknowns)[0], 1).max())
+def test_the_mesh_of_the_example_gives_what_is_published():
+    assert LowerBeam(19).displacement(15) == pytest.approx(PUBLISHED, abs=1e-4)
 
 
-if __name__ == "__main__":
-    run()
+@pytest.mark.parametrize("per_length, depth, place", [(PENALTY / RADIUS, "kDeep = ", "kWhenDeep"),
+                                                      (9.734e6, "kShallow = ", "kWhenShallow")])
+def test_the_limit_for_finer_meshes(per_length, depth, place):
+    beam = LowerBeam(76, per_length)
+    source = "reference/crossing_beams_test.cpp"
+    assert beam.displacement(10) == pytest.approx(stated_numbers(source, place + "(", 3), abs=2e-6)
+    deepest = beam.penetrations(beam.nodes(beam.unknowns)[0], 1).max()
+    assert deepest == pytest.approx(stated_numbers(source, depth, 1)[0], abs=2.5e-5)

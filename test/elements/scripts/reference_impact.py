@@ -1,12 +1,15 @@
 """A ball hits a cantilever from the side (Timoshenko's problem).
 
 The beam has modes of Euler and Bernoulli without damping. The contact is the hardening spring of docs/notes/stops.md 2.
-Prints the numbers that test/reference/line_contact_test.cpp compares with.
+A test for pytest of the numbers that test/reference/line_contact_test.cpp compares with.
 """
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+
+from stated_numbers import stated_numbers
 
 YOUNG, DENSITY, RADIUS, LENGTH, PLACE = 2e11, 7800.0, 0.005, 1.0, 0.5
 MASS, SPEED, GAP, STIFFNESS, DEPTH = 0.05, 0.2, 1e-4, 1e5, 5e-4
@@ -42,6 +45,8 @@ def run(count):
     return result.y[-1, -1], shapes @ result.y[:count, -1]
 
 
-if __name__ == "__main__":
-    for number in (8, 12, 16):
-        print(number, *run(number))
+def test_speed_and_deflection():
+    stated = stated_numbers("reference/line_contact_test.cpp", "reference_impact.py\n// gives", 7)
+    for count, speed in zip((8, 12, 16), stated):
+        assert run(count)[0] == pytest.approx(speed, abs=1e-5)
+    assert run(16)[1] == pytest.approx(stated[6], rel=1e-3)

@@ -1,4 +1,4 @@
-"""Two equal strands wound around each other: the closed form of docs/notes/contact.md 6, and its checks.
+"""Two equal strands wound around each other: the closed form of docs/notes/contact.md 6, and its tests, for pytest.
 
 The form is the uniform ply of Thompson, van der Heijden and Neukirch (2002), without friction. Both centrelines are
 helices of radius r [m], opposite each other; b is the angle of their tangents with the axis. Strands may also stretch
@@ -40,7 +40,7 @@ def ply(r, b, twist, axial, bending, torsion, stretching=None, shearing=None):
     }
 
 
-def check_virtual_work(random):
+def error_of_virtual_work(random):
     """Compare derivatives of a ply's energy per length by b and r: the moment works on the rotation, the contact force
     on r."""
     r, bending, torsion, axial = random.uniform(0.5, 2, 4)
@@ -59,7 +59,7 @@ def check_virtual_work(random):
     return max(abs(moment / form["moment"] - 1), abs(contact / form["contact"] - 1))
 
 
-def check_balance(random):
+def error_of_balance(random):
     """Check the balances of a strand that is built step by step with its own strains: return the largest residual."""
     r, bending, torsion, axial = random.uniform(0.5, 2, 4)
     stretching, shearing = random.uniform(10, 50, 2)
@@ -95,13 +95,7 @@ def check_balance(random):
     return max(np.abs(residual).max(), abs(force[2] - axial), abs(moment[2] + arm - form["moment"]))
 
 
-def run():
+def test_ply():
     random = np.random.default_rng(5)
-    work = max(check_virtual_work(random) for _ in range(20))
-    balance = max(check_balance(random) for _ in range(5))
-    print(f"ply: virtual work {work:.1e}, balances {balance:.1e}")
-    assert work < 1e-8 and balance < 1e-8
-
-
-if __name__ == "__main__":
-    run()
+    assert max(error_of_virtual_work(random) for _ in range(20)) < 1e-8
+    assert max(error_of_balance(random) for _ in range(5)) < 1e-8

@@ -1,12 +1,14 @@
-#!/usr/bin/env python3
-"""Prints reference values for test/reference/static_friction_test.cpp: stick and slip with Stribeck's curve.
+"""Tests the reference values of test/reference/static_friction_test.cpp: stick and slip with Stribeck's curve.
 
 A mass on a rail is pulled by a spring whose end moves with constant speed. Friction is F (1 + (r - 1) exp(-(v/v_s)^2)).
 While the mass sticks, everything is known in closed form; events end the slips.
 """
 import math
 
+import pytest
 from scipy.integrate import solve_ivp
+
+from stated_numbers import stated_numbers
 
 MASS, STIFFNESS, SPEED, FRICTION, RATIO = 2.0, 200.0, 0.1, 4.0, 1.5
 
@@ -28,16 +30,16 @@ def slip(stribeck):
     return run.t[-1], run.y[0, -1]
 
 
-def main():
+@pytest.mark.parametrize("stribeck", [0.01, 0.05])
+def test_slip_and_period(stribeck):
+    duration, stretch = slip(stribeck)
+    period = duration + (FRICTION * RATIO / STIFFNESS - stretch) / SPEED
+    assert [period, duration] == pytest.approx(
+        stated_numbers("reference/static_friction_test.cpp", "Case{%g," % stribeck, 2), abs=1e-9)
+
+
+def test_slip_for_a_vanishing_stribeck_speed():
     frequency, fall = math.sqrt(STIFFNESS / MASS), FRICTION * (RATIO - 1) / STIFFNESS
-    print("breaks away at %.10g s" % (FRICTION * RATIO / STIFFNESS / SPEED))
-    print("slip for a vanishing Stribeck speed: %.10g s" %
-          (2 * (math.pi - math.atan(fall * frequency / SPEED)) / frequency))
-    for stribeck in (1e-5, 1e-3, 0.01, 0.05):
-        duration, stretch = slip(stribeck)
-        period = duration + (FRICTION * RATIO / STIFFNESS - stretch) / SPEED
-        print("Stribeck speed %g m/s: slip %.10g s, period %.10g s" % (stribeck, duration, period))
-
-
-if __name__ == "__main__":
-    main()
+    limit = 2 * (math.pi - math.atan(fall * frequency / SPEED)) / frequency
+    assert limit == pytest.approx(0.4712, abs=5e-5)
+    assert slip(1e-5)[0] == pytest.approx(limit, abs=1e-6)

@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Prints reference values for test/simulation/hydraulics_test.cpp: a mass on the oil of a cylinder, by solve_ivp.
+"""Tests the reference values of test/simulation/hydraulics_test.cpp: a mass on the oil of a cylinder, by solve_ivp.
 
 Each chamber has a content u: the volume of its oil without pressure. It is closed, lets oil out at the relief pressure
 while its volume shrinks, or takes oil from the tank while its volume grows and its pressure is zero. Events change
@@ -8,7 +7,10 @@ between these; within each the equations are smooth.
 import math
 
 import numpy
+import pytest
 from scipy.integrate import solve_ivp
+
+from stated_numbers import stated_numbers
 
 BORE, ROD, LOWER, UPPER, START, DEAD, MASS = 0.08, 0.04, 0.2, 1.0, 0.6, 1e-4, 50.0
 AREA = numpy.array([math.pi * BORE**2 / 4, -math.pi * (BORE**2 - ROD**2) / 4])  # change of volume per length
@@ -103,16 +105,15 @@ class Oil:
         return state, self.pressures(state), count, (min(lengths), max(lengths))
 
 
-def show(name, oil, speed, end):
-    state, pressures, count, extent = oil.run(speed, end)
-    print("%-14s %.15g, %.15g, %.12g, %.12g  (%d events, %.3f to %.3f m)" % (
-        name, state[0], state[1], pressures[0], pressures[1], count, *extent))
-
-
-if __name__ == "__main__":
-    print("name, length [m], velocity [m/s], pressures [Pa]")
-    show("swings far", Oil(2e7, 5e6), 8, 0.5)
-    show("with voids", Oil(2e7, 2e5), 8, 0.5)
-    show("made up", Oil(2e7, 2e5, makes_up=True, force=lambda t: 2e4 * math.sin(40 * t)), 2, 0.5)
-    show("relieved", Oil(2e7, 1e6, relief=3e6, makes_up=True, force=lambda t: 1.1e4 * math.sin(40 * t)), 2, 0.5)
-    show("pumped", Oil(1e9, 2e6, flow=lambda t: 2e-3 * math.sin(20 * t), force=lambda t: -2000.0), 0, 0.5)
+@pytest.mark.parametrize("name, oil, speed", [
+    ("swings far", Oil(2e7, 5e6), 8),
+    ("with voids", Oil(2e7, 2e5), 8),
+    ("made up", Oil(2e7, 2e5, makes_up=True, force=lambda t: 2e4 * math.sin(40 * t)), 2),
+    ("relieved", Oil(2e7, 1e6, relief=3e6, makes_up=True, force=lambda t: 1.1e4 * math.sin(40 * t)), 2),
+    ("pumped", Oil(1e9, 2e6, flow=lambda t: 2e-3 * math.sin(20 * t), force=lambda t: -2000.0), 0)])
+def test_run(name, oil, speed):
+    stated = stated_numbers("simulation/hydraulics_test.cpp", '{"%s",' % name, 5)
+    assert stated[0] == speed
+    state, pressures, _, _ = oil.run(speed, 0.5)
+    assert state[:2] == pytest.approx(stated[1:3], abs=1e-9)
+    assert pressures == pytest.approx(stated[3:], rel=1e-7, abs=1e-3)
