@@ -74,7 +74,8 @@ Vector3 RotationReference::total_rotation(std::size_t node, const Quaternion& or
 }
 
 void RotationReference::begin(const State& state) {
-  if (keeps_total_) std::copy(state.study.total_rotations.begin(), state.study.total_rotations.end(), begin_total_.begin());
+  if (keeps_total_)
+    std::copy(state.study.total_rotations.begin(), state.study.total_rotations.end(), begin_total_.begin());
   if (!is_used() || interpolation_ == Interpolation::Total) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = state.nodes[i].orientation;
   std::copy(state.study.stiffness_rotations.begin(), state.study.stiffness_rotations.end(), stiffness_.begin());

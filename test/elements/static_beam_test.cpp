@@ -28,8 +28,8 @@ TYPED_TEST(StaticBeam, TangentOfStatics) {
   constexpr int N = TypeParam::value;
   RandomSource random(1);
   const RandomStep<N> step(random, 0.5);
-  expect_consistent_tangent<N>(
-      step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, with); });
+  expect_consistent_tangent<N>(step,
+                               [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, with); });
 }
 
 TYPED_TEST(StaticBeam, StressFreeWhereverTheUndeformedShapeIsPlaced) {

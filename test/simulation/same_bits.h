@@ -30,7 +30,8 @@ inline std::vector<double> numbers(const State& state) {
     add(node.angular_acceleration);
   }
   for (const Released& released : state.released) add(released.displacement), add(released.rotation.coeffs());
-  for (const MassPointState& point : state.study.mass_points) add(point.angular_velocity), add(point.angular_acceleration);
+  for (const MassPointState& point : state.study.mass_points)
+    add(point.angular_velocity), add(point.angular_acceleration);
   for (const Vector6& rate : state.study.strain_rates) add(rate);
   for (const Vector6& strain : state.branch_strains) add(strain);
   out.insert(out.end(), state.efforts.begin(), state.efforts.end());
