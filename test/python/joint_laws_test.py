@@ -43,10 +43,10 @@ LAWS = {
     "servo of velocity": ({"parts": '<servo joint="hinge" mode="velocity" kp="12" ki="40" '
                                     'set_point="sin(3*t)"/>'}, SCHEMES),
     "sampled servo": ({"parts": '<servo joint="hinge" mode="position" kp="80" kd="6" ki="40" sample_time="0.01" '
-                                'delay="0.004" set_point="0.5"/>'}, ("em", "edmc2") + EXPLICIT),
+                                'delay="0.004" set_point="0.5"/>'}, ("em", "edmc2", "newmark") + EXPLICIT),
     "sampled servo, set point that jumps at a sample": (
         {"parts": '<servo joint="hinge" mode="position" kp="80" kd="6" sample_time="0.01" '
-                  'set_point="t &lt; 0.2 ? 1 : 0.7"/>'}, ("em", "edmc2") + EXPLICIT),
+                  'set_point="t &lt; 0.2 ? 1 : 0.7"/>'}, ("em", "edmc2", "newmark") + EXPLICIT),
 }
 
 
