@@ -26,6 +26,7 @@ def type_commands(commands, setup, folder):
     """Run commands in a folder, in a shell that has sourced `setup` and nothing else. Return the exit status and the
     output."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_WORKSPACES}
+    environment["CMAKE_POLICY_VERSION_MINIMUM"] = "3.5"  # catkin's own top-level file, with CMake 4 (docs/install.md)
     environment["PATH"] = os.path.dirname(sys.executable) + ":/usr/bin:/bin:/usr/sbin:/sbin"
     result = subprocess.run(
         ["bash", "-c", "\n".join([f"source '{setup}'", "set -e", *commands])],
