@@ -3,8 +3,10 @@
 #include <cstdio>
 
 #include "elements/beam_point.h"
+#include "math/cayley.h"
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
+#include "study_schemes/referenced_rotation.h"
 
 namespace flexarm::test {
 namespace {
