@@ -51,7 +51,9 @@ void expect_tuned(const std::string& scene, const std::string& options) {
   const std::string data = read_file(fs::path(output).replace_extension(".csv").string());
   EXPECT_EQ(data.substr(0, data.find(',')), "role");
   EXPECT_NE(data.find("\nbest,"), std::string::npos);
-  EXPECT_EQ(fs::exists(fs::path(output).replace_extension(".png")), outcome.errors.empty()) << outcome.errors;
+  // On a busy machine the search says what it does.
+  const std::string errors = std::regex_replace(outcome.errors, std::regex("flexarm: after [^\n]*\n"), "");
+  EXPECT_EQ(fs::exists(fs::path(output).replace_extension(".png")), errors.empty()) << errors;
 }
 
 }  // namespace
