@@ -39,7 +39,7 @@ LAWS = {
     "servo": ({"parts": '<servo joint="hinge" mode="position" kp="80" kd="12" ki="60" '
                         'set_point="1 + 0.3*sin(4*t)"/>'}, SCHEMES),
     "servo at its limit": ({"parts": '<servo joint="hinge" mode="position" kp="90" kd="10" ki="100" set_point="0.4" '
-                                     'effort_limit="9" anti_windup="0.1"/>'}, CONSERVING + EXPLICIT),
+                                     'effort_limit="9" anti_windup="0.1"/>'}, SCHEMES),
     "servo of velocity": ({"parts": '<servo joint="hinge" mode="velocity" kp="12" ki="40" '
                                     'set_point="sin(3*t)"/>'}, SCHEMES),
     "sampled servo": ({"parts": '<servo joint="hinge" mode="position" kp="80" kd="6" ki="40" sample_time="0.01" '
