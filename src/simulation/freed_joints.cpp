@@ -50,7 +50,7 @@ class FreedState {
       poses[slave] = slave_pose(to_, j, poses, released[j]);
       velocities[slave] = slave_velocity(to_, j, poses, released[j], velocities).with(rates[j]);
     }
-    MechanismMotion motion{{poses, released}, {}, {}};
+    MechanismMotion motion{{{poses, released}, {}}, {}, {}};
     motion.rates.nodes = velocities;
     for (const ActuatorState& actuator : state_.actuators) {
       motion.rotors.push_back(actuator.angle);
