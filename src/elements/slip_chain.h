@@ -16,6 +16,8 @@ struct TendonPartStep;
 /// found part by part (dynamic programming), in n^2 evaluations.
 class SlipChain {
  public:
+  /// Makes room for so many parts: solve() allocates nothing then.
+  void reserve(std::size_t parts) { lowest_.reserve(parts), tension_.reserve(parts); }
   /// `parts`, `ratios`: as of TendonSlip::solve(). `slips`: output, per guide.
   void solve(const TendonLaw& law, const std::vector<TendonPartStep>& parts, const std::vector<double>& ratios,
              Eigen::VectorXd& slips);

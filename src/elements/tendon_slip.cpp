@@ -47,6 +47,12 @@ double TendonPartStep::rest_at(const TendonLaw& law, double tension) const {
   return std::min(rest, end.length);
 }
 
+void TendonSlip::begin(int parts) {
+  slips_.setZero(parts - 1);
+  update_.resize(parts - 1);
+  chain_.reserve(static_cast<std::size_t>(parts));
+}
+
 void TendonSlip::evaluate() {
   double largest = 0, rate = 0, length = 0;
   for (int p = 0; p < static_cast<int>(parts_->size()); ++p) {

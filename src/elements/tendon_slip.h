@@ -40,8 +40,8 @@ class TendonSlip {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// Begins a step: forgets the last slips.
-  void begin(int parts) { slips_.setZero(parts - 1); }
+  /// Begins a step: forgets the last slips. Makes room for all that solve() may need, also if nothing slips yet.
+  void begin(int parts);
   /// The slips that the next solve() tries first. They may be set after begin(); else they are those of the last
   /// solve().
   Eigen::VectorXd& guess() { return slips_; }

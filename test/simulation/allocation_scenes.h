@@ -29,7 +29,8 @@ inline std::string relaxing_scene(const std::string& axis) {
     <simulation> <gravity xyz="0 0 -9.81"/> <integrator scheme="em" step="1e-3"/> </simulation> </robot>)xml";
 }
 
-/// A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch.
+/// A line that slips over a point, runs over a pulley and onto a drum, paid out by a winch. It is slack first; then the
+/// mass falls into it.
 inline std::string rope_scene(double friction) {
   return robot(
       joint("rail", "prismatic", "world", "mass", "<origin xyz='0 0 -1'/><axis xyz='0 0 1'/>" + kFarLimits) +
@@ -41,7 +42,7 @@ inline std::string rope_scene(double friction) {
       <pulley link="world" at="1 0 1.2" axis="0 1 0" radius="0.1" side="left"/>
       <pulley link="drum" axis="0 1 0" radius="0.2" side="left" grips="true"/> </tendon>
     <winch name="hoist" tendon="rope"/> <sensor name="cell" kind="tendon" tendon="rope"/>
-    <tendon name="other" ea="100" rest_length="0.5"> <via link="world"/> <via link="mass"/> </tendon>)",
+    <tendon name="other" ea="100" rest_length="1"> <via link="world"/> <via link="mass"/> </tendon>)",
                       friction > 0 ? fmt::format("friction='{}'", friction) : ""),
       gravity({0, 0, -9.81}) + integrator("em", 1e-3) + "<motion joint='hoist' position='0.1*sin(9*t)'/>");
 }
