@@ -10,6 +10,7 @@
 #include "math/so3.h"
 
 namespace flexarm {
+
 MechanismPose pose_of(const State& state) {
   return {configuration_of(state), state.force_memory};
 }
@@ -91,14 +92,20 @@ Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
 
 Eigen::MatrixXd MotionMaps::constraints(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
   assert(maps.rows() == rows_ && maps.cols() == columns_);
-  const ConstraintRows jacobian = closure_jacobian({model_, dof_, pose}, Constraints::WithMultipliers);
-  const Eigen::VectorXd scales = scalar_scales(model_, dof_);
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(constraint_count_, columns_);  // by the unknowns
-  for (int row = 0; row < constraint_count_; ++row)
-    for (ConstraintRows::InnerIterator entry(jacobian, row); entry; ++entry)
-      if (const int column = dof_.equation[entry.col()]; column >= 0)
-        rows(row, column) = entry.value() / scales[entry.col()];
-  return rows * unknowns(pose, maps);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(constraint_count_, columns_);
+  int row = 0;
+  for_each_constraint(model_, Constraints::WithMultipliers, [&](const auto& closure, const auto& constraint) {
+    const ClosureRows own = closure_rows(closure, constraint, closure_poses(closure, pose.nodes));
+    const auto add = [&](int node, Vector6 by_motion) {  // maps have spins along the node's axes
+      if (node < 0) return;
+      by_motion.tail<3>() = (pose.nodes[node].rotation.transpose() * by_motion.tail<3>()).eval();
+      rows.row(row) += by_motion.transpose() * maps.middleRows<6>(dof_.first[node]);
+    };
+    add(closure.child, own.child);
+    add(closure.parent, own.parent);
+    rows.row(row++) /= constraint_scale(model_, constraint);
+  });
+  return rows;
 }
 
 std::vector<int> MotionMaps::scalars_of_columns() const {

@@ -126,10 +126,10 @@ VelocityChange closing_change(const Model& model, const DegreesOfFreedom& dof, c
                               const std::vector<Vector6>& velocities) {
   if (model.closures.empty()) return {};
   Configuration configuration = configuration_of(state);
-  const std::vector<NodePose> poses = configuration.nodes;
-  LoopOpening opening = opening_of(model, poses, velocities);
+  LoopOpening opening = opening_of(model, configuration.nodes, velocities);
   if (opening.is_round_off()) return {};
   const Kinematics kinematics(model, dof, std::move(configuration));
+  const std::vector<NodePose>& poses = kinematics.nodes();
   ClosingImpulses impulses(kinematics, state);
   VelocityChange best;
   for (int round = 0; round < kRounds && !opening.is_round_off(); ++round) {
