@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unsupported/Eigen/AutoDiff>
 
+#include "elements/line_ends.h"
 #include "joints/coordinate_step.h"
 #include "math/so3.h"
 #include "model/state.h"
@@ -12,7 +13,6 @@
 namespace flexarm {
 namespace {
 
-using Vector12 = Eigen::Matrix<double, 12, 1>;
 /// A number with its derivatives by {displacement, spin} of the nodes of `from` and `to`.
 using Dual = Eigen::AutoDiffScalar<Vector12>;
 using so3::cross;
@@ -135,14 +135,6 @@ Eigen::Matrix<S, 12, 1> residual_of(const Frame<S>& from, const Frame<S>& to, co
     out[9 + i] = of_to[i] + moment[i];
   }
   return out;
-}
-
-std::vector<int> nodes_of(const NodePoint& from, const NodePoint& to) {
-  assert(from.node != to.node && "between two bodies, of which one at least moves");
-  std::vector<int> nodes;
-  for (const NodePoint* point : {&from, &to})
-    if (point->node >= 0) nodes.push_back(point->node);
-  return nodes;
 }
 
 /// The measures at a state, and their derivatives.

@@ -5,20 +5,9 @@
 #include "elements/line_ends.h"
 
 namespace flexarm {
-namespace {
-
-std::vector<int> ends_that_move(const NodePoint& child, const NodePoint& parent) {
-  assert(child.node >= 0 && child.node != parent.node && "between two bodies, of which one at least moves");
-  std::vector<int> nodes;
-  for (const NodePoint* point : {&child, &parent})
-    if (point->node >= 0) nodes.push_back(point->node);
-  return nodes;
-}
-
-}  // namespace
 
 LineElement::LineElement(std::string name, const NodePoint& from, const NodePoint& to)
-    : ForceElement(std::move(name), to.node >= 0 ? ends_that_move(to, from) : ends_that_move(from, to)),
+    : ForceElement(std::move(name), nodes_of(to, from)),
       child_(to.node >= 0 ? to : from),
       parent_(to.node >= 0 ? from : to) {}
 

@@ -1,6 +1,7 @@
 #include "elements/line_ends.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "math/so3.h"
@@ -24,6 +25,14 @@ NodePose pose_of(const State& state, int node) {
 }
 
 }  // namespace
+
+std::vector<int> nodes_of(const NodePoint& first, const NodePoint& second) {
+  assert((first.node >= 0 || second.node >= 0) && first.node != second.node);
+  std::vector<int> nodes;
+  for (const NodePoint* point : {&first, &second})
+    if (point->node >= 0) nodes.push_back(point->node);
+  return nodes;
+}
 
 LineEnds::LineEnds(const NodePoint& child, const NodePoint& parent, const NodePose& child_pose,
                    const NodePose& parent_pose)

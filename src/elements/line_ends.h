@@ -9,6 +9,10 @@ namespace flexarm {
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
+/// Returns the nodes of two points of different bodies, of which one at least moves: both, or the one that is not the
+/// world.
+std::vector<int> nodes_of(const NodePoint& first, const NodePoint& second);
+
 /// Arms and distance of two points, `child` and `parent`, in world axes, at one instant or averaged over two.
 struct LineEnds {
   Vector3 child_arm, parent_arm;
