@@ -27,7 +27,7 @@ void StaticBeams::begin() {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const LocalRotationAt<N> rotation_at(element, nodes, false);
     GeneralisedShapeFunctions<N> unused;
-    for (int k = 0; k < N - 1; ++k)
+    for (int k = 0; k < BeamElement<N>::kStiffnessPoints; ++k)
       carried_[element.first_stiffness_point + k] =
           end_kinematics<N>(element.stiffness_points[k], nodes, rotation_at(k, unused)).strain;
   });
@@ -39,7 +39,7 @@ void StaticBeams::add_forces(Balance& balance) {
     const auto add =
         configuration_.scheme().tests_vary_strains ? static_beam<N, VariationForm> : static_beam<N, SpinForm>;
     const int first = element.first_stiffness_point;
-    std::array<PointKinematics, N - 1> points;
+    std::array<PointKinematics, BeamElement<N>::kStiffnessPoints> points;
     ElementSystem<N> system;
     system.set_zero();
     add(element, nodes, balance.tangent != nullptr, points.data(), system,
