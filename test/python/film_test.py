@@ -398,8 +398,11 @@ def test_without_a_package_it_is_told_which_one(folder, missing, package):
     programs.mkdir()
     for name in {"chromium", "chromedriver", "ffmpeg"} - {missing}:
         (programs / name).symlink_to(shutil.which(name))
-    text = "import sys\nsys.modules['selenium'] = None\n" if missing == "selenium" else ""
-    (folder / "sitecustomize.py").write_text(text)
+    # The driver is also looked for in folders outside PATH, and may be there.
+    hidden = {"selenium": "import sys\nsys.modules['selenium'] = None\n",
+              "chromedriver": "import shutil\nfind = shutil.which\n"
+                              "shutil.which = lambda name: None if name.endswith('chromedriver') else find(name)\n"}
+    (folder / "sitecustomize.py").write_text(hidden.get(missing, ""))
     said = film(folder, "ball.html", status=2, PATH=str(programs), PYTHONPATH=str(folder))
     assert said == "flexarm: film: films need Debian's package %s, which is missing\n" % package
 
