@@ -320,7 +320,7 @@ struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
   }
 };
 
-/// Computes carried strains (see flexarm::carried_strains()) from the strains of set_strains() and an update {dr, spin}.
+/// Computes carried strains (see flexarm::carried_strains()) from set_strains()'s strains and an update {dr, spin}.
 template <int Nodes, typename S>
 void carry_strains(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes,
                    const StepPoints<Nodes, S>& at, const std::array<Vector6T<S>, Nodes>& update,

@@ -108,7 +108,7 @@ void Kinematics::move_slave(int j, Eigen::Ref<Eigen::MatrixXd> motions) const {
   slave.topRows<3>() -= so3::hat(map.lever_right) * master.bottomRows<3>();
 }
 
-void Kinematics::complete(Eigen::Ref<Eigen::MatrixXd> motions) const {
+void Kinematics::complete(const Eigen::Ref<Eigen::MatrixXd>& motions) const {
   assert(motions.rows() == dof_.scalar_count);
   move_followers(motions);
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j) move_slave(j, motions);

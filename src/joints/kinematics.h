@@ -82,8 +82,8 @@ class Kinematics {
   void move_followers(Eigen::Ref<Eigen::MatrixXd> motions) const;
   /// Sets the rows of a joint's slave, from those of its masters and its coordinates.
   void move_slave(int joint, Eigen::Ref<Eigen::MatrixXd> motions) const;
-  /// Sets the rows of all followers and all slaves.
-  void complete(Eigen::Ref<Eigen::MatrixXd> motions) const;
+  /// Sets the rows of all followers and all slaves, in the numbers to which `motions` refers.
+  void complete(const Eigen::Ref<Eigen::MatrixXd>& motions) const;
 
  private:
   const Model& model_;

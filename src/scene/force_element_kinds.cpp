@@ -23,7 +23,8 @@ void read_ends(const XmlElement& element, BetweenTwoPoints& out) {
 }
 
 LinkChange BetweenTwoPoints::change_links(const LinkChanges& change) {
-  const LinkChange first = change(from), second = change(to);
+  LinkChange first = change(from);
+  const LinkChange second = change(to);
   from = first.name, from_at = first.frame * from_at;
   to = second.name, to_at = second.frame * to_at;
   return first;
