@@ -14,7 +14,7 @@
 #include "flexarm/simulation/driven_ends.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
-#include "scene/joint_kind_names.h"
+#include "scene/joint_kinds.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -101,7 +101,7 @@ void print_joints(const Simulation& simulation) {
   if (shown.empty()) return;
   fmt::print("\n{:<24} {:<12} {:<20} {:<20} {}\n", "joint", "kind", "parent", "child", "coordinates");
   for (scene::JointDescription joint : shown) {
-    std::string kind = name_of(joint.kind);
+    std::string kind = scene::traits_of(joint.kind).name;
     // A cylinder is a row with the links that it connects.
     for (const scene::JointDescription& hinge : scene.joints)
       if (hinge.is_hidden && hinge.child == joint.parent) joint.parent = hinge.parent, kind = "cylinder";

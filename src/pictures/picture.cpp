@@ -12,7 +12,7 @@
 
 #include "pictures/shape_surface.h"
 #include "pictures/surface_meshes.h"
-#include "scene/joint_kind_names.h"
+#include "scene/joint_kinds.h"
 
 namespace flexarm::pictures {
 namespace {
@@ -22,9 +22,7 @@ constexpr int kFewestSections = 7;
 
 /// Whether the joint's axis is a direction of the link that it carries, whatever its position.
 bool has_axis(scene::JointKind kind) {
-  using scene::JointKind;
-  return kind != JointKind::Fixed && kind != JointKind::Floating && kind != JointKind::Spherical &&
-         kind != JointKind::Universal && kind != JointKind::Slide;
+  return scene::traits_of(kind).axes == 1 && kind != scene::JointKind::Slide;
 }
 
 /// The box of even density with this inertia, if a body can have it.
@@ -169,7 +167,7 @@ class PictureMaker {
     const int parent = links_.at(joint.parent), child = links_.at(joint.child);
     picture_.links[child].parent = parent;
     if (joint.is_hidden) return;
-    PictureJoint shown{joint.name, name_of(joint.kind), static_cast<std::size_t>(child), {}, {}};
+    PictureJoint shown{joint.name, scene::traits_of(joint.kind).name, static_cast<std::size_t>(child), {}, {}};
     if (has_axis(joint.kind)) shown.axis = joint.axis;
     for (std::size_t i = 0; i < picture_.columns.size(); ++i)
       if (is_of(joint, picture_.columns[i].name)) shown.columns.push_back(i);

@@ -6,7 +6,6 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "model/carried_origin.h"
-#include "scene/joint_kind_names.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/wrenches.h"

@@ -9,18 +9,11 @@
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/result_columns.h"
 #include "model/carried_origin.h"
-#include "scene/joint_kind_names.h"
+#include "scene/joint_kinds.h"
 #include "simulation/inside.h"
 
 namespace flexarm::pictures {
 namespace {
-
-/// Whether a joint's child stays at the joint's origin.
-bool keeps_place(scene::JointKind kind) {
-  using scene::JointKind;
-  return kind == JointKind::Fixed || kind == JointKind::Revolute || kind == JointKind::Continuous ||
-         kind == JointKind::Spherical || kind == JointKind::Universal;
-}
 
 bool is_known(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite();
@@ -86,7 +79,7 @@ void RecordedMotion::find_child(std::size_t index, Link& link) const {
     const auto is_child = [&](const scene::LinkDescription& other) { return other.name == joint.child; };
     const auto child = std::find_if(scene.links.begin(), scene.links.end(), is_child) - scene.links.begin();
     link.child = static_cast<std::size_t>(child);
-    link.child_stays = keeps_place(joint.kind);
+    link.child_stays = scene::traits_of(joint.kind).keeps_place;
     link.coordinates.clear();
     for (const std::string& suffix : scene::coordinate_suffixes(joint))
       if (const auto coordinate = moved_.find_coordinate(joint.name + suffix)) link.coordinates.push_back(*coordinate);

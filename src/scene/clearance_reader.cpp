@@ -1,12 +1,8 @@
+#include "scene/joint_kinds.h"
 #include "scene/readers.h"
 
 namespace flexarm::scene {
 namespace {
-
-bool may_have_play(JointKind kind) {
-  return kind == JointKind::Revolute || kind == JointKind::Continuous || kind == JointKind::Prismatic ||
-         kind == JointKind::Spherical;
-}
 
 /// Records errors for children of <joint> that act on its coordinate (mimic, friction, damping, stops). A joint with
 /// play has no such coordinate: its child moves with the six degrees of freedom of a free body.
@@ -44,7 +40,7 @@ ClearanceDescription read_clearance(const XmlElement& clearance, const XmlElemen
   if (clearance.has("journal")) out.journal = clearance.number("journal", kPositive).value_or(0);
 
   const JointKind kind = description.kind;
-  if (!may_have_play(kind)) {
+  if (!traits_of(kind).may_have_play) {
     clearance.error("only revolute, continuous, prismatic and spherical joints may have play");
     return out;
   }

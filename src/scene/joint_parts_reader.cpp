@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "scene/joint_kinds.h"
 #include "scene/limits.h"
 #include "scene/readers.h"
 #include "schemes/slide_scheme.h"
@@ -167,11 +168,6 @@ Radius radius_of(const JointDescription& joint) {
   return rotation == JointKind::Fixed || rotation == JointKind::Spherical ? Radius::Useless : Radius::Optional;
 }
 
-bool has_normal_force(JointKind kind) {
-  return kind != JointKind::Fixed && kind != JointKind::Floating && kind != JointKind::Spherical &&
-         kind != JointKind::Planar;
-}
-
 void check_radius(const XmlElement& friction, double coefficient, Radius radius) {
   const bool has_radius = friction.has("radius");
   if (has_radius && radius == Radius::Useless)
@@ -194,7 +190,7 @@ void read_friction(const XmlElement& friction, JointDescription& description) {
   out.stribeck_speed = friction.number("stribeck", kPositive, out.stribeck_speed);
   if (friction.has("stribeck") && !friction.has("static"))
     friction.attribute_error("stribeck", "friction falls with the speed only if there is more at rest, static > 1");
-  if (friction.has("coefficient") && !has_normal_force(description.kind))
+  if (friction.has("coefficient") && !traits_of(description.kind).has_normal_force)
     friction.attribute_error(
         "coefficient",
         "fixed, floating, spherical and planar joints have no normal force on which friction could depend; leave "

@@ -9,6 +9,7 @@
 
 #include "math/number_text.h"
 #include "math/pi.h"
+#include "scene/joint_kinds.h"
 #include "scene/readers.h"
 #include "scene/urdfdom.h"
 
@@ -111,20 +112,17 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
 
 // ---------------------------------------------------------------- joints
 
-constexpr Choice<JointKind> kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
-                                        {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
-                                        {"planar", JointKind::Planar},         {"floating", JointKind::Floating},
-                                        {"spherical", JointKind::Spherical}};  // not in URDF, but in Bullet
-constexpr Choice<JointKind> kReleases[] = {{"spherical", JointKind::Spherical},
-                                           {"universal", JointKind::Universal},
-                                           {"cylindrical", JointKind::Cylindrical},
-                                           {"planar", JointKind::Planar},
-                                           {"free", JointKind::Floating}};
+/// The kind that an attribute names. If it is missing or unknown, records an error and returns nothing.
+std::optional<JointKind> read_kind(const XmlElement& element, const char* attribute,
+                                   const std::vector<JointKindName>& names) {
+  const JointKindName* row = read_row(element, attribute, names);
+  return row ? std::optional<JointKind>(row->kind) : std::nullopt;
+}
 
 /// Reads the kind of a joint from `type` and <release>. For <couple> and <slide> the exact kind is read with their
 /// data.
 std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
-  const std::optional<JointKind> type = read_choice(joint, "type", kTypes);
+  const std::optional<JointKind> type = read_kind(joint, "type", joint_types());
   std::vector<XmlElement> narrowing;
   for (const char* tag : {"release", "couple", "slide"})
     if (const std::optional<XmlElement> child = joint.child(tag)) narrowing.push_back(*child);
@@ -139,31 +137,36 @@ std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
   if (first.tag() == "couple") return JointKind::Screw;
   if (first.tag() == "slide") return JointKind::Slide;
   first.expect_only({"kind"});
-  return read_choice(first, "kind", kReleases);
+  return read_kind(first, "kind", joint_releases());
 }
 
-bool uses_axis(JointKind kind) {
-  return kind != JointKind::Fixed && kind != JointKind::Floating && kind != JointKind::Spherical;
+/// "universal or ...".
+std::string kinds_with_two_axes() {
+  std::string out;
+  for (const JointKindTraits& traits : joint_kinds())
+    if (traits.axes == 2) out += (out.empty() ? "" : " or ") + std::string(traits.release);
+  return out;
 }
 
 void read_axes(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> axis = joint.child("axis"), axis2 = joint.child("axis2");
   // The <axis> of a joint that uses none is ignored: exporters give fixed joints the axis 0 0 0.
-  if (axis && uses_axis(description.kind)) description.axis = axis->direction("xyz").value_or(description.axis);
+  if (axis && traits_of(description.kind).axes > 0)
+    description.axis = axis->direction("xyz").value_or(description.axis);
   const bool is_coupled_slide = description.slide && has_dependent_travel(description.slide->rotation);
   if (joint.child("couple") || is_coupled_slide) {
     if (!axis && !is_coupled_slide)
       joint.error("a joint with <couple> needs the axis of its angle, <axis xyz=\"...\"/>");
     return;
   }
-  const bool is_universal = description.kind == JointKind::Universal ||
-                            (description.slide && description.slide->rotation == JointKind::Universal);
-  if (!is_universal) {
-    if (axis2) axis2->error("only a joint with <release kind=\"universal\"/> has a second axis");
+  const JointKindTraits& turning = traits_of(description.slide ? description.slide->rotation : description.kind);
+  if (turning.axes < 2) {
+    if (axis2)
+      axis2->error(fmt::format("only a joint with <release> of kind {} has a second axis", kinds_with_two_axes()));
     return;
   }
   if (!axis2) {
-    joint.error("a universal joint needs a second axis, <axis2 xyz=\"...\"/>");
+    joint.error(fmt::format("a {} joint needs a second axis, <axis2 xyz=\"...\"/>", turning.name));
     return;
   }
   axis2->expect_only({"xyz"});
@@ -171,7 +174,7 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
   if (!direction) return;
   description.axis2 = *direction;
   if (direction->cross(description.axis).norm() < 1e-6)
-    axis2->attribute_error("xyz", "the axes of a universal joint must not be parallel");
+    axis2->attribute_error("xyz", fmt::format("the axes of a {} joint must not be parallel", turning.name));
 }
 
 /// Reads a limit. Returns 0, which means no limit, if the attribute is missing or below 0. A value below 0 means no
@@ -201,9 +204,7 @@ void read_limits(const XmlElement& joint, JointDescription& description) {
   if (!limit || description.kind == JointKind::Fixed || joint.child("clearance")) return;
   description.effort_limit = read_unlimited(*limit, "effort");
   const double velocity = read_unlimited(*limit, "velocity");
-  if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
-      !has_dependent_travel(description.kind))
-    return;
+  if (!traits_of(description.kind).may_have_stops) return;
   double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
   if (has_dependent_travel(description.kind) && lower == upper) return;  // <limit> is given for its effort only
   if (lower > upper) {
@@ -388,7 +389,8 @@ JointDescription read_foreign_loop_joint(const XmlElement& joint) {
   joint.expect_at_most_one({"link1", "link2", "axis"});
   description.origin = read_side(joint, "link1", description.parent);
   description.child_origin = read_side(joint, "link2", description.child);
-  description.kind = read_choice(joint, "type", kTypes, JointKind::Spherical);
+  description.kind =
+      joint.has("type") ? read_kind(joint, "type", joint_types()).value_or(JointKind::Spherical) : JointKind::Spherical;
   read_axes(joint, description);
   const std::string type = joint.has("type") ? joint.text("type").value_or("") : "spherical";
   joint.warning("<link1> and <link2>, the form of Drake and Isaac Sim, are read as a loop joint of type " +
