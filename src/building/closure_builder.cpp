@@ -41,7 +41,10 @@ bool add_constraints(const scene::JointDescription& joint, const Quaternion& fra
   const Vector3 axis = frame * joint.axis.normalized(), second = frame * joint.axis2.normalized();
   const Vector3 y = axis.unitOrthogonal(), z = axis.cross(y);
   const auto point = [&] { maker.gap(axis), maker.gap(y), maker.gap(z); };
-  const auto parallel_axes = [&] { maker.direction(axis, y), maker.direction(axis, z); };
+  const auto keep_direction = [&](const Vector3& d) {
+    maker.direction(d, d.unitOrthogonal()), maker.direction(d, d.cross(d.unitOrthogonal()));
+  };
+  const auto parallel_axes = [&] { keep_direction(axis); };
   const auto no_turn = [&] { parallel_axes(), maker.direction(y, z); };
   switch (joint.kind) {
     case JointKind::Fixed:
@@ -53,6 +56,8 @@ bool add_constraints(const scene::JointDescription& joint, const Quaternion& fra
       return maker.gap(y), maker.gap(z), no_turn(), true;
     case JointKind::Cylindrical:
       return maker.gap(y), maker.gap(z), parallel_axes(), true;
+    case JointKind::PinSlot:
+      return maker.gap(y), maker.gap(z), keep_direction(second), true;
     case JointKind::Planar:
       return maker.gap(axis), parallel_axes(), true;
     case JointKind::Spherical:

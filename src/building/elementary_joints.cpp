@@ -67,6 +67,8 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
       return {scalar_map(zero, a), scalar_map(zero, a2)};
     case JointKind::Cylindrical:
       return {scalar_map(a, zero), scalar_map(zero, a)};
+    case JointKind::PinSlot:
+      return {scalar_map(a, zero), scalar_map(zero, a2)};
     case JointKind::Screw:
     case JointKind::RackAndPinion:
     case JointKind::Worm:

@@ -38,6 +38,7 @@ const std::vector<JointKindTraits>& joint_kinds() {
       {Kind::Spherical, "spherical", "spherical", "spherical", 0, rotation, false, true, false, true},
       {Kind::Universal, "universal", nullptr, "universal", 2, two, false, false, true, true},
       {Kind::Cylindrical, "cylindrical", nullptr, "cylindrical", 1, two, false, false, true, false},
+      {Kind::PinSlot, "pin_slot", nullptr, "pin_slot", 2, two, false, false, true, false},
       {Kind::Screw, "screw", nullptr, nullptr, 1, one, true, false, true, false},
       {Kind::RackAndPinion, "rack_and_pinion", nullptr, nullptr, 1, one, true, false, true, false},
       {Kind::Worm, "worm", nullptr, nullptr, 1, one, true, false, true, false},

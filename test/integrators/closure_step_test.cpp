@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
     KindsAndSchemes, ClosedStep,
     ::testing::Combine(::testing::Values(JointKind::Fixed, JointKind::Continuous, JointKind::Prismatic,
                                          JointKind::Spherical, JointKind::Universal, JointKind::Cylindrical,
-                                         JointKind::Planar),
+                                         JointKind::PinSlot, JointKind::Planar),
                        ::testing::Values("em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3")));
 
 // The norm of an update is a length. A multiplier enters it by the distance that its force moves the mechanism in a

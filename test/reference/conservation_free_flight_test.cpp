@@ -68,15 +68,11 @@ TEST_P(FreeTree, ConservesWithEveryKindOfJoint) {
 
 const std::vector<std::pair<scene::JointKind, std::string>>& joint_kinds() {
   using scene::JointKind;
-  static const std::vector<std::pair<JointKind, std::string>> list = {{JointKind::Fixed, "fixed"},
-                                                                      {JointKind::Revolute, "revolute"},
-                                                                      {JointKind::Continuous, "continuous"},
-                                                                      {JointKind::Prismatic, "prismatic"},
-                                                                      {JointKind::Planar, "planar"},
-                                                                      {JointKind::Floating, "floating"},
-                                                                      {JointKind::Spherical, "spherical"},
-                                                                      {JointKind::Universal, "universal"},
-                                                                      {JointKind::Cylindrical, "cylindrical"}};
+  static const std::vector<std::pair<JointKind, std::string>> list = {
+      {JointKind::Fixed, "fixed"},         {JointKind::Revolute, "revolute"},   {JointKind::Continuous, "continuous"},
+      {JointKind::Prismatic, "prismatic"}, {JointKind::Planar, "planar"},       {JointKind::Floating, "floating"},
+      {JointKind::Spherical, "spherical"}, {JointKind::Universal, "universal"}, {JointKind::Cylindrical, "cylindrical"},
+      {JointKind::PinSlot, "pin_slot"}};
   return list;
 }
 

@@ -41,15 +41,11 @@ TEST_P(Newton, QuadraticOnALargeStepOfAFlexibleBeam) {
 }
 
 TEST_P(Newton, QuadraticWithEveryKindOfJoint) {
-  const std::vector<std::pair<std::string, JointKind>> kinds = {{"fixed", JointKind::Fixed},
-                                                                {"revolute", JointKind::Revolute},
-                                                                {"continuous", JointKind::Continuous},
-                                                                {"prismatic", JointKind::Prismatic},
-                                                                {"planar", JointKind::Planar},
-                                                                {"floating", JointKind::Floating},
-                                                                {"spherical", JointKind::Spherical},
-                                                                {"universal", JointKind::Universal},
-                                                                {"cylindrical", JointKind::Cylindrical}};
+  const std::vector<std::pair<std::string, JointKind>> kinds = {
+      {"fixed", JointKind::Fixed},         {"revolute", JointKind::Revolute},   {"continuous", JointKind::Continuous},
+      {"prismatic", JointKind::Prismatic}, {"planar", JointKind::Planar},       {"floating", JointKind::Floating},
+      {"spherical", JointKind::Spherical}, {"universal", JointKind::Universal}, {"cylindrical", JointKind::Cylindrical},
+      {"pin_slot", JointKind::PinSlot}};
   for (const auto& [name, kind] : kinds) {
     SceneBuilder b = free_tree(kind);
     b.scene.initial_links[0].angular *= 3;

@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FreeLoop,
                          ::testing::Combine(::testing::Values(JointKind::Fixed, JointKind::Revolute,
                                                               JointKind::Prismatic, JointKind::Spherical,
                                                               JointKind::Universal, JointKind::Cylindrical,
-                                                              JointKind::Planar, JointKind::Screw),
+                                                              JointKind::PinSlot, JointKind::Planar, JointKind::Screw),
                                             ::testing::Bool()));
 
 /// A flying beam whose end is welded to its beginning, if `gap` [m] is 0.

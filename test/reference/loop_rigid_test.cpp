@@ -188,7 +188,7 @@ TEST_P(FreeRing, ConservesEnergyAndMomenta) {
 INSTANTIATE_TEST_SUITE_P(Kinds, FreeRing,
                          ::testing::Values(JointKind::Fixed, JointKind::Continuous, JointKind::Prismatic,
                                            JointKind::Spherical, JointKind::Universal, JointKind::Cylindrical,
-                                           JointKind::Planar));
+                                           JointKind::PinSlot, JointKind::Planar));
 
 }  // namespace
 }  // namespace flexarm::test

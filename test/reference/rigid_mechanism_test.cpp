@@ -107,6 +107,26 @@ Mechanism cylindrical_pendulum() {
   return m;
 }
 
+/// A pendulum whose pin slides in a level slot.
+Mechanism sliding_pendulum() {
+  const double mass = 0.9, length = 0.5, inertia = 0.06;
+  Mechanism m{"pin_slot", {}, {"pin/1", "pin/2"}, {}, VectorXd(2), VectorXd(2)};
+  m.scene.scene.gravity = {0, 0, -kGravity};
+  add_body(m.scene, "bob", mass, {0, 0.1, -length}, {0.2, inertia, 0.2});
+  m.scene.joint("pin", JointKind::PinSlot, "world", "bob", {0, 0, 0}, {1, 0, 0}).axis2 = Vector3::UnitY();
+  m.acceleration = [=](const VectorXd& q, const VectorXd& rate) {
+    const double lever = mass * length * std::cos(q[1]);
+    Eigen::Matrix2d masses;
+    masses << mass, -lever, -lever, inertia + mass * length * length;
+    const Eigen::Vector2d force(-mass * length * std::sin(q[1]) * rate[1] * rate[1],
+                                -mass * kGravity * length * std::sin(q[1]));
+    return VectorXd(masses.inverse() * force);
+  };
+  m.position << 0.2, 1.2;
+  m.velocity << 0.5, -1;
+  return m;
+}
+
 /// A body thrown in a vertical plane. The joint's frame is not at its centre of mass.
 Mechanism planar_body() {
   const double offset = 0.4;
@@ -125,7 +145,8 @@ Mechanism planar_body() {
 }
 
 std::vector<Mechanism> mechanisms() {
-  return {double_pendulum(), radial_slider(), universal_pendulum(), cylindrical_pendulum(), planar_body()};
+  return {double_pendulum(),      radial_slider(),    universal_pendulum(),
+          cylindrical_pendulum(), sliding_pendulum(), planar_body()};
 }
 
 VectorXd exact_positions(const Mechanism& m, double until) {

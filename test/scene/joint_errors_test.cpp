@@ -105,9 +105,9 @@ TEST(JointErrors, EqualLimitsAreAWarning) {
 
 TEST(JointErrors, Release) {
   const std::string release = R"(<release kind="universal"/>)", axis2 = R"(<axis2 xyz="0 0 3"/>)";
-  expect_error(
-      release, R"(<release kind="ball"/>)", 44,
-      "<release> of joint 'wrist': kind must be one of planar, free, spherical, universal, cylindrical, got 'ball'");
+  expect_error(release, R"(<release kind="ball"/>)", 44,
+               "<release> of joint 'wrist': kind must be one of planar, free, spherical, universal, cylindrical, "
+               "pin_slot, got 'ball'");
   expect_error(release, R"(<release/>)", 44, "attribute 'kind' is missing");
   expect_error(release, R"(<release kind="universal" axis="1 0 0"/>)", 44,
                "unknown attribute, expected kind, got 'axis'");
@@ -116,7 +116,7 @@ TEST(JointErrors, Release) {
   expect_error(axis2, R"(<axis2 xyz="0 0 0"/>)", 43, "xyz must not be zero");
   expect_error(R"(<limit effort="7" velocity="1"/>)",
                axis2.substr(0, axis2.size() - 2) + R"( /><limit effort="7" velocity="1"/>)", 25,
-               "only a joint with <release> of kind universal has a second axis");
+               "only a joint with <release> of kind universal or pin_slot has a second axis");
   expect_error(R"(<limit effort="7")", R"(<release kind="free"/><limit effort="7")", 25,
                "the type of the joint must be 'floating', got 'continuous'");
 }

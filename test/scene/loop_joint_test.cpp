@@ -72,6 +72,7 @@ TEST(LoopJoint, EveryKind) {
   EXPECT_EQ(kind_of("spherical", ""), JointKind::Spherical);
   EXPECT_EQ(kind_of("floating", R"(<release kind="spherical"/>)"), JointKind::Spherical);
   EXPECT_EQ(kind_of("floating", R"(<release kind="cylindrical"/>)"), JointKind::Cylindrical);
+  EXPECT_EQ(kind_of("floating", R"(<axis2 xyz="0 0 1"/> <release kind="pin_slot"/>)"), JointKind::PinSlot);
   EXPECT_EQ(kind_of("floating", axis + R"(<couple kind="screw" pitch="0.1"/>)"), JointKind::Screw);
 }
 

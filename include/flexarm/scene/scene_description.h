@@ -63,6 +63,7 @@ enum class JointKind {
   Spherical,
   Universal,
   Cylindrical,
+  PinSlot,
   // Kinds with one coordinate, the angle about `axis`, and a travel that depends on this angle:
   Screw,
   RackAndPinion,
@@ -132,7 +133,8 @@ struct JointDescription {
   std::string parent, child;        ///< link names
   Pose origin;                      ///< joint frame in the parent link frame
   Vector3 axis = Vector3::UnitX();  ///< unit vector in the joint frame (planar: the normal)
-  /// Second axis of a universal joint, unit, in the joint frame after the rotation by the first angle.
+  /// Second axis, unit, in the joint frame: of a universal joint after the rotation by the first angle; of a pin in
+  /// a slot the pin's axis.
   Vector3 axis2 = Vector3::UnitY();
   // Joints with dependent travel
   double ratio = 0;   ///< travel per angle: pitch, radius of the pinion, ratio of the worm [m/rad]
@@ -405,7 +407,7 @@ struct SceneDescription {
 /// - one coordinate: {""}; no coordinate: {};
 /// - planar: /x /y /rz (in the plane normal to the axis);
 /// - floating: /x /y /z /rx /ry /rz; spherical: /rx /ry /rz;
-/// - universal: /1 /2 (the two angles); cylindrical: /1 /2 (travel, angle);
+/// - universal: /1 /2 (the two angles); cylindrical, pin_slot: /1 /2 (travel, angle);
 /// - slides: {""} without rotation; else /s (arc length) and the suffixes of their rotation, /rx /ry /rz, /1 or /1 /2.
 ///   With dependent travel, /1 also determines the arc length.
 ///
