@@ -51,10 +51,10 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
 void StepSystem::start(const State& state, double step) {
   configuration_.begin(state, step);
   histories_.begin(configuration_);
-  if (planar_ && planar_->choose(model_, state)) family().invalidate();
-  if (prestrains_.begin(1)) family_->invalidate();
+  space_.choose(state);
+  if (prestrains_.begin(1)) space_.family_in_space().invalidate();
   family().begin();
-  force_elements_.begin(*tangent_);
+  force_elements_.begin(space_.tangent_in_space());
   loops_.begin();
   friction_.begin();
   efforts_.begin();
@@ -131,7 +131,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   if (configuration_.is_off_line()) return false;
   Balance balance{rows_, with_tangent ? &tangent() : nullptr};
   rows_.set_zero();
-  if (with_tangent) tangent().set_zero(), has_planar_tangent_ = is_planar();
+  if (with_tangent) tangent().set_zero(), evaluated_ = &tangent();
   if (with_tangent && family().carries_strains()) {
     carried_rows_.set_zero();
     balance.carried = &carried_rows_;
@@ -186,7 +186,7 @@ void StepSystem::accept(State& state) {
   state.work += work;
   state.dissipated += dissipated_;
   configuration_.remember_increments(state.history);
-  if (is_planar()) planar_->tidy(configuration_, state.history);
+  space_.tidy(state.history);
   scales_.choose_order(state.history);
   loops_.remember(state.history);
   family().accept(state);

@@ -10,7 +10,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       configuration_(model, scheme, dof_),
       histories_(model),
       prestrains_(configuration_),
-      family_(make_scheme_family(configuration_, prestrains_)),
+      space_(configuration_, prestrains_, backend, space),
       forces_(configuration_, histories_),
       force_elements_(configuration_, histories_),
       drag_(configuration_),
@@ -20,18 +20,14 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       actuators_(configuration_, histories_, efforts_),
       joints_(configuration_, efforts_, friction_, actuators_),
       reactions_(configuration_, loops_),
-      held_efforts_(configuration_, histories_, forces_, reactions_, *family_),
+      held_efforts_(configuration_, histories_, forces_, reactions_, space_.family_in_space()),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),
       carried_rows_(model, dof_),
-      tangent_(make_tangent_backend(model, dof_, backend)),
-      planar_(space == Space::PlaneWhereFound ? make_planar_step(configuration_) : nullptr),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)),
       nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
-      scales_(model, dof_) {
-  if (family_->evaluates_packs()) tangent_->condense_interiors();
-}
+      scales_(model, dof_) {}
 
 void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
   configuration_.lead(other.configuration_.led_to());
@@ -61,18 +57,13 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   configuration_.begin(state, 0);
   histories_.begin(configuration_);
   prestrains_.begin(load_factor);
-  family_->begin();
-  force_elements_.begin(*tangent_);
+  family().begin();
+  force_elements_.begin(tangent());
   loops_.begin();
   efforts_.begin();
   actuators_.begin();
   configuration_.set_prescribed(0.0);
   configuration_.set_slaves();
-}
-
-void StepSystem::invalidate() {
-  family_->invalidate();
-  if (planar_) planar_->invalidate();
 }
 
 void StepSystem::note_events(FirstEvent& first) {
@@ -91,7 +82,7 @@ void StepSystem::carry_strains(double fraction) {
 }
 
 void StepSystem::accept_rest(State& state) {
-  family_->accept(state);
+  family().accept(state);
   joints_.accept(state);
   efforts_.accept(state);
   actuators_.accept(state);
@@ -117,7 +108,7 @@ std::vector<Vector6> StepSystem::nodal_forces(const State& state) {
 
 void StepSystem::initialise(State& state) {
   configuration_.begin(state, 0);
-  family_->initialise(state);
+  space_.family_in_space().initialise(state);
 }
 
 }  // namespace flexarm

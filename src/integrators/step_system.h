@@ -24,18 +24,14 @@
 #include "integrators/joint_reactions.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
-#include "integrators/planar_step.h"
-#include "integrators/scheme_family.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
+#include "integrators/step_space.h"
 #include "integrators/stop_contacts.h"
 #include "integrators/unknown_scales.h"
 
 namespace flexarm {
-
-/// Whether steps of a mechanism that moves in a plane are computed in that plane. The results are the same.
-enum class Space { ThreeDimensional, PlaneWhereFound };
 
 /// Allocates no memory after construction, except in KLU when a slider enters another element of its line.
 class StepSystem {
@@ -82,16 +78,14 @@ class StepSystem {
   /// evaluation at an updated configuration. Null: the equations are unchanged. Otherwise the change in words.
   const char* revise() { return friction_.revise() ? "friction sticks or slips" : nullptr; }
   /// Whether the tangent that was evaluated last belongs to the present active sets and dimension (plane or space).
-  bool tangent_holds() const { return friction_.tangent_holds() && has_planar_tangent_ == is_planar(); }
+  bool tangent_holds() const { return friction_.tangent_holds() && evaluated_ == &tangent(); }
   /// Writes the trial configuration as the new state; an equilibrium at rest. It must be evaluated after its last
   /// update.
   void accept(State& state);
   /// Discards data kept from the last step. To be called after the state was changed by something other than a step.
-  void invalidate();
+  void invalidate() { space_.invalidate(); }
   /// Makes strains independent of the path to a configuration.
-  void forget_path(State& state) { family_->forget_path(state); }
-  /// Whether the step begun last is taken in a plane.
-  bool is_planar() const { return planar_ && planar_->is_on; }
+  void forget_path(State& state) { space_.family_in_space().forget_path(state); }
 
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
@@ -99,8 +93,8 @@ class StepSystem {
   const Drag& drag() const { return drag_; }
   const Actuators& actuators() const { return actuators_; }
   const Eigen::VectorXd& residual() const { return residual_; }
-  TangentBackend& tangent() { return is_planar() ? planar_->tangent : *tangent_; }
-  const TangentBackend& tangent() const { return is_planar() ? planar_->tangent : *tangent_; }
+  TangentBackend& tangent() { return space_.tangent(); }
+  const TangentBackend& tangent() const { return space_.tangent(); }
   /// See LoopMultipliers::largest_opening().
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// Whether the step is too long for a hit, see StopContacts and ForceElement::needs_halves().
@@ -133,7 +127,7 @@ class StepSystem {
   void move_ahead(const IncrementHistory& history, int order);
   void place_followers();
   const Scheme& scheme() const { return configuration_.scheme(); }
-  SchemeFamily& family() { return is_planar() ? planar_->beams : *family_; }
+  SchemeFamily& family() { return space_.family(); }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 
@@ -143,7 +137,7 @@ class StepSystem {
   StepHistories histories_;
   StepPrestrains prestrains_;
   // ---- the parts
-  std::unique_ptr<SchemeFamily> family_;
+  StepSpace space_;
   NodalForces forces_;
   ForceElements force_elements_;
   Drag drag_;
@@ -158,10 +152,8 @@ class StepSystem {
   StopContacts contacts_;
   // ---- the balance to which they add
   ReducedResidual rows_, carried_rows_;
-  std::unique_ptr<TangentBackend> tangent_;
-  std::unique_ptr<PlanarStep> planar_;  // null unless the mechanism moves in a plane
-  bool has_planar_tangent_ = false;
-  double dissipated_ = 0;  // over the step [J]
+  const TangentBackend* evaluated_ = nullptr;  // where the tangent was evaluated last
+  double dissipated_ = 0;                      // over the step [J]
   Eigen::VectorXd residual_;
   std::vector<double> nodal_update_;
   UnknownScales scales_;
