@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "joints/penetration.h"
+#include "joints/stop_restitution.h"
 #include "math/pi.h"
 
 namespace flexarm {
@@ -45,9 +46,9 @@ ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most,
 }  // namespace
 
 double damping_for_restitution(double restitution) {
-  assert(restitution >= 0.05 && restitution <= 1);
+  assert(restitution >= 0 && restitution <= 1);
   if (restitution == 1) return 0;
-  const double e = restitution;
+  const double e = std::max(restitution, kLeastRestitution);
   // Newton's method from the leading terms of the series at e = 1; bisection if an update leaves the bracket.
   double low = 1e-9, high = (1 - 1e-15) / e, d = std::min(1.5 * (1 - e), high);
   for (int i = 0; i < 100; ++i) {

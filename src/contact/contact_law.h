@@ -18,7 +18,7 @@ class Restitution {
 
   Restitution() : Restitution(1) {}
   explicit Restitution(double value);
-  /// `values`: from 0.05 to 1. `speeds`: as many, at most kMost, increasing; empty for one value [m/s].
+  /// `values`: from 0 to 1. `speeds`: as many, at most kMost, increasing; empty for one value [m/s].
   Restitution(const std::vector<double>& values, const std::vector<double>& speeds);
 
   double at(double speed) const;
@@ -46,8 +46,8 @@ struct ContactLaw {
   bool resists_turns() const { return spinning > 0 || rolling > 0; }
 };
 
-/// Returns the damping d of Hunt and Crossley's law for a coefficient of restitution e from 0.05 to 1, from
-/// (1 + d) / (1 - e d) = exp(d (1 + e)). It does not depend on mass, stiffness or speed. (Gonthier et al. 2004)
+/// Returns the damping d of Hunt and Crossley's law for a coefficient of restitution e from 0 to 1, at least
+/// kLeastRestitution (joints/stop_restitution.h), from (1 + d) / (1 - e d) = exp(d (1 + e)). It does not depend on mass, stiffness or speed. (Gonthier et al. 2004)
 double damping_for_restitution(double restitution);
 
 /// The largest penetration in an equilibrium, relative to ContactLaw::depth.

@@ -1,5 +1,6 @@
 #include "joints/stop_restitution.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -41,7 +42,8 @@ double restitution_of(double ratio) {
 }  // namespace
 
 double stop_damping_ratio(double restitution) {
-  assert(restitution >= 0.05 && restitution <= 1);
+  assert(restitution >= 0 && restitution <= 1);
+  restitution = std::max(restitution, kLeastRestitution);
   double low = 0, high = 10;  // bisection: the restitution decreases with the ratio
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);

@@ -25,7 +25,7 @@ constexpr NumberRange kModerate{"at most 1e60 in absolute value", [](double x) {
 constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
 constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
 /// Coefficient of restitution of stops. The lower bound excludes 0, since no finite damper absorbs the whole impact.
-constexpr NumberRange kRestitution{"from 0.05 to 1", [](double x) { return x >= 0.05 && x <= 1; }};
+constexpr NumberRange kRestitution{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
 
 /// A view of an XML element. The tinyxml2 element and the Findings must outlive it.

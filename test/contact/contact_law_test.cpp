@@ -187,6 +187,7 @@ TEST(ContactPush, HasTheDampingOfItsClosedForm) {
     EXPECT_GT(d, 0.5 * (1 - e)) << "0 is a solution, too";
   }
   EXPECT_EQ(damping_for_restitution(1), 0);
+  EXPECT_EQ(damping_for_restitution(0), damping_for_restitution(0.05)) << "the most damped hit";
 }
 
 Vector3 random_vector(std::mt19937& generator, double size) {

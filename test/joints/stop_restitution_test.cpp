@@ -29,6 +29,7 @@ TEST(StopRestitution, OfOneTakesNoDamper) {
 }
 
 TEST(StopRestitution, OfStrongDampers) {
+  EXPECT_EQ(stop_damping_ratio(0), stop_damping_ratio(0.05)) << "the most damped hit";
   const double found = stop_damping_ratio(0.05);
   EXPECT_GT(found, 1);
   EXPECT_LT(found, 5);

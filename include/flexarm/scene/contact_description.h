@@ -18,7 +18,7 @@ struct GroundDescription {
   SourceLocation location = {};
 };
 
-/// Coefficient of restitution, from 0.05 to 1: one value, or values at increasing speeds of approach [m/s]. Between
+/// Coefficient of restitution, from 0 to 1: one value, or values at increasing speeds of approach [m/s]. Between
 /// these speeds it is linear, beyond them constant.
 struct RestitutionDescription {
   static constexpr std::size_t kMostSpeeds = 8;

@@ -81,7 +81,7 @@ constexpr bool has_dependent_travel(JointKind kind) {
 struct JointLimits {
   double lower, upper;                     ///< position [rad or m]
   double velocity = 0;                     ///< stored but not enforced
-  std::optional<double> restitution = {};  ///< coefficient of the stops, from 0.05 to 1; empty: 0.3
+  std::optional<double> restitution = {};  ///< coefficient of the stops, from 0 to 1; empty: 0.3
   /// That an undamped hit lasts [s]; empty: SceneDescription::contact_time.
   std::optional<double> contact_time = {};
   std::optional<double> stiffness = {};  ///< of the stops [N/m or N m/rad]; instead of a contact time
@@ -108,7 +108,7 @@ struct SlideDescription {
   std::string scheme = "sm_em";            ///< time integration of the sliding contact (docs/schemes.md)
   bool smooth = true;                      ///< make the line's tangent continuous across element borders
   Vector3 offset = Vector3::Zero();        ///< rigid offset from the line to the joint, in the joint frame [m]
-  std::optional<double> restitution = {};  ///< coefficient of the stops, from 0.05 to 1; empty: 0.3
+  std::optional<double> restitution = {};  ///< coefficient of the stops, from 0 to 1; empty: 0.3
   SourceLocation location = {};
 };
 
