@@ -111,8 +111,13 @@ class ContactElement : public ForceElement {
   /// Returns the number of measures of a point that touches.
   int measures_each() const;
   static PointMemory memory_at(const double* numbers) {
-    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5],
-            numbers[6], Eigen::Map<const Vector3>(numbers + 7)};
+    return {numbers[0],
+            Eigen::Map<const Vector3>(numbers + 1),
+            static_cast<int>(numbers[4]),
+            numbers[5],
+            numbers[6],
+            Eigen::Map<const Vector3>(numbers + 7),
+            numbers[10]};
   }
   static void put(const PointMemory& memory, double* numbers) {
     numbers[0] = memory.speed;
@@ -121,6 +126,7 @@ class ContactElement : public ForceElement {
     numbers[5] = memory.within;
     numbers[6] = memory.start;
     Eigen::Map<Vector3>(numbers + 7) = memory.turned;
+    numbers[10] = memory.root;
   }
   /// Returns the position of a station's middle in the frame of the shapes, at the poses `pose_of(node)` [m].
   template <class PoseOf>

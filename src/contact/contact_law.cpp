@@ -18,11 +18,21 @@ constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
 /// the surface (ContactLaw::most_start) would be pushed out. Without this bound, a contact that begins at rest would
 /// cover all of its motion in every step, however short.
 constexpr double kSlow = 1e-3;
+/// Phase angle by which a step advances a sticking oscillator that the step damps best, and the angle of the contact's
+/// oscillator in a usual step, a tenth of the contact time.
+constexpr double kBestAngle = 4, kUsualAngle = kPi / 10;
 /// An initial penetration decays to 1/e while the contact's oscillator advances by this phase angle.
 constexpr double kLetOutAngle = 100;
 
-/// The part of a stretch normal to `normal`, of length at most `most`. `most_by_push`: derivative of `most`.
-ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
+/// What sticks at the end of a step by itself: `whole` and at most `most`, with derivatives.
+struct Held {
+  Vector3 stretch;
+  Matrix3 by_whole, by_normal;
+  Vector3 by_most;
+};
+
+/// The part of a stretch normal to `normal`, of length at most `most`.
+Held held_across(const Vector3& whole, const Vector3& normal, double most) {
   const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
   const Vector3 trial = tangential * whole;
   const Matrix3 by_normal = -(normal.dot(whole) * Matrix3::Identity() + normal * whole.transpose());
@@ -30,17 +40,24 @@ ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most
   if (size <= most) return {trial, tangential, by_normal, Vector3::Zero()};
   const Vector3 along = trial / size;
   const Matrix3 turn = most / size * (Matrix3::Identity() - along * along.transpose());
-  return {most * along, turn * tangential, turn * by_normal, most_by_push * along};
+  return {most * along, turn * tangential, turn * by_normal, along};
 }
 
 /// The part of a stretch along `normal`, of length at most `most`.
-ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
+Held held_along(const Vector3& whole, const Vector3& normal, double most) {
   const double size = normal.dot(whole);
   if (std::abs(size) <= most)
     return {size * normal, normal * normal.transpose(), size * Matrix3::Identity() + normal * whole.transpose(),
             Vector3::Zero()};
   const double sign = size < 0 ? -1 : 1;
-  return {sign * most * normal, Matrix3::Zero(), sign * most * Matrix3::Identity(), sign * most_by_push * normal};
+  return {sign * most * normal, Matrix3::Zero(), sign * most * Matrix3::Identity(), sign * normal};
+}
+
+/// `most`: the largest pull, per push; `slip`: as in `held` before it was scaled by the root.
+ContactGrip grip_of(const Held& held, const Vector3& slip, double push, double most, double root) {
+  const Vector3 stretch_by_root = held.by_whole * slip - most * push / (root * root) * held.by_most;
+  return {held.stretch,          root * held.stretch, root * root * held.by_whole,
+          root * held.by_normal, most * held.by_most, held.stretch + root * stretch_by_root};
 }
 
 }  // namespace
@@ -158,20 +175,33 @@ double let_out_rate(const ContactLaw& law, double start) {
   return start * law.frequency / kLetOutAngle;
 }
 
+GripRoot grip_root(const ContactLaw& law, double penetration, double duration) {
+  if (penetration <= 0 || std::isinf(law.depth)) return {};
+  const double s = share({penetration, law.depth}), square = s * s, a = room(s);
+  const double factor = (1 + square * (18 + 21 * square)) / std::pow(a, 6);
+  const double angle = duration == 0 ? kUsualAngle : law.frequency * std::abs(duration);
+  const double most = std::max(1.0, kBestAngle * kBestAngle / (angle * angle));
+  if (factor >= most) return {std::sqrt(most), 0};
+  const double slope = 24 * s * (2 + square * (11 + 7 * square)) / std::pow(a, 7) / law.depth;
+  return {std::sqrt(factor), 0.5 * slope / std::sqrt(factor)};
+}
+
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
-                         double push) {
+                         double push, double root) {
   assert(law.grip > 0);
-  return held_across(stretch + slip, normal, law.friction * push / law.grip, law.friction / law.grip);
+  const double most = law.friction / law.grip;
+  return grip_of(held_across(stretch + root * slip, normal, most * push / root), slip, push, most, root);
 }
 
 ContactGrip turn_grip(const ContactLaw& law, const Vector3& turned, const Vector3& turn, const Vector3& normal,
-                      double push) {
+                      double push, double root) {
   assert(law.turn_grip > 0);
   const double spins = law.spinning / law.turn_grip, rolls = law.rolling / law.turn_grip;
-  const ContactGrip along = held_along(turned + turn, normal, spins * push, spins);
-  const ContactGrip across = held_across(turned + turn, normal, rolls * push, rolls);
-  return {along.stretch + across.stretch, along.by_slip + across.by_slip, along.by_normal + across.by_normal,
-          along.by_push + across.by_push};
+  const Vector3 whole = turned + root * turn;
+  const ContactGrip along = grip_of(held_along(whole, normal, spins * push / root), turn, push, spins, root);
+  const ContactGrip across = grip_of(held_across(whole, normal, rolls * push / root), turn, push, rolls, root);
+  return {along.stretch + across.stretch,     along.pull + across.pull,       along.by_slip + across.by_slip,
+          along.by_normal + across.by_normal, along.by_push + across.by_push, along.by_root + across.by_root};
 }
 
 }  // namespace flexarm

@@ -40,14 +40,15 @@ struct ContactLaw {
   double depth = std::numeric_limits<double>::infinity();  ///< largest possible penetration [m]
   double most_start = 0;             ///< initial penetrations up to this act fully at once; see let_out() [m]
   double friction = 0;               ///< Coulomb's coefficient
-  double grip = 0;                   ///< tangential stiffness while it sticks [N/m]
+  double grip = 0;                   ///< tangential stiffness while it sticks, for small penetrations [N/m]
   double spinning = 0, rolling = 0;  ///< largest couple about the normal and across it, per normal force [m]
   double turn_grip = 0;              ///< stiffness of these couples while they stick [N m/rad]
   bool resists_turns() const { return spinning > 0 || rolling > 0; }
 };
 
 /// Returns the damping d of Hunt and Crossley's law for a coefficient of restitution e from 0 to 1, at least
-/// kLeastRestitution (joints/stop_restitution.h), from (1 + d) / (1 - e d) = exp(d (1 + e)). It does not depend on mass, stiffness or speed. (Gonthier et al. 2004)
+/// kLeastRestitution (joints/stop_restitution.h), from (1 + d) / (1 - e d) = exp(d (1 + e)). It does not depend on
+/// mass, stiffness or speed. (Gonthier et al. 2004)
 double damping_for_restitution(double restitution);
 
 /// The largest penetration in an equilibrium, relative to ContactLaw::depth.
@@ -98,20 +99,29 @@ double let_out(const ContactLaw& law, double start, double duration);
 /// this.
 double let_out_rate(const ContactLaw& law, double start);
 
-/// Friction as a tangential spring: its stretch along the surface at the end of the step [m], and the derivatives with
-/// respect to the slip over the step, the unit normal and the normal force (push). The friction force is
-/// ContactLaw::grip times the stretch, at most Coulomb's force. The force at the end acts over the whole step. This
-/// dissipates energy and never generates it, so that sticking contacts do not oscillate.
+/// The tangential stiffness hardens as the normal one does: by the factor V''(p) / k of the penetration p at the end.
+/// This is the factor's root, and its derivative with respect to p. While a contact rests, the factor is bounded, so
+/// that a step of the length `duration` [s] damps what sticks; 0: an equilibrium. (docs/notes/contact.md 3)
+struct GripRoot {
+  double value = 1, slope = 0;
+};
+GripRoot grip_root(const ContactLaw& law, double penetration, double duration);
+
+/// Friction as a tangential spring. `stretch`: at the end of the step [m], so that ContactLaw::grip / 2 times its
+/// square is the stored energy. `pull`: the root of the hardening times the stretch [m]. The friction force is
+/// ContactLaw::grip times the pull, at most Coulomb's force. The force at the end acts over the whole step. This
+/// dissipates energy and never generates it, so that sticking contacts do not oscillate. Derivatives are those of the
+/// pull with respect to the slip over the step, the unit normal, the normal force (push) and the root.
 struct ContactGrip {
-  Vector3 stretch;
+  Vector3 stretch, pull;
   Matrix3 by_slip, by_normal;
-  Vector3 by_push;
+  Vector3 by_push, by_root;
 };
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
-                         double push);
+                         double push, double root);
 /// The same for resistance to spinning and rolling, with ContactLaw::turn_grip. `turned`: stretch at the beginning
 /// [rad]; `turn`: relative rotation over the step [rad].
 ContactGrip turn_grip(const ContactLaw& law, const Vector3& turned, const Vector3& turn, const Vector3& normal,
-                      double push);
+                      double push, double root);
 
 }  // namespace flexarm

@@ -16,13 +16,14 @@ namespace flexarm {
 namespace {
 
 LineMemory line_memory_at(const double* numbers) {
-  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), numbers[4], numbers[5]};
+  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), numbers[4], numbers[5], numbers[6]};
 }
 void put(const LineMemory& memory, double* numbers) {
   numbers[0] = memory.speed;
   Eigen::Map<Vector3>(numbers + 1) = memory.stretch;
   numbers[4] = memory.stiffening;
   numbers[5] = memory.start;
+  numbers[6] = memory.root;
 }
 
 }  // namespace
@@ -344,8 +345,9 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
     point.normal = sign * normal;
     point.push = push * point.normal;
     point.friction.setZero();
+    const double root = old.root > 0 ? old.root : grip_root(law, felt, 0).value;
     if (law.friction > 0)
-      point.friction = -sign * law.grip * contact_grip(law, old.stretch, Vector3::Zero(), normal, push).stretch;
+      point.friction = -sign * law.grip * contact_grip(law, old.stretch, Vector3::Zero(), normal, push, root).pull;
     point.gap = gap;
     take(point);
   }
@@ -384,8 +386,8 @@ ForceMeasures LineContact::measures(const State& state, const double*, const int
       }
       for (int i = 0; i <= search_.line().order; ++i)
         add(row, search_.line().elements[place.element][i], -weights[i], axes[k], offset + below);
-      out.stiffness(row, row) =
-          k == 0 ? contact_push(law, {0, search_.radius_of(pair) - offset.norm(), 0}).slope : law.grip;
+      const double penetration = search_.radius_of(pair) - offset.norm(), root = grip_root(law, penetration, 0).value;
+      out.stiffness(row, row) = k == 0 ? contact_push(law, {0, penetration, 0}).slope : root * root * law.grip;
     }
   });
   return out;

@@ -74,7 +74,7 @@ HalfTurn half_turn(const Vector3& w) {
 
 /// Adds friction at the ball's surface.
 void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion, const LineMemory& memory,
-                   bool with_slope, LineAction& action) {
+                   const GripRoot& root, bool with_slope, LineAction& action) {
   const double weight = motion.at_end ? 1 : 0.5, length_least = 1e-12 * radii.sum;
   const Vector3 middle = weight * motion.end + (1 - weight) * motion.begin;
   const double length = middle.norm();
@@ -84,8 +84,8 @@ void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMoti
   const Vector3 slip = motion.end - motion.begin - motion.line_turn.cross(middle) + turn.cross(offset);
   const HalfTurn half = half_turn(motion.line_turn);
   const Vector3 stretch = half.rotation * memory.stretch;
-  const ContactGrip grip = contact_grip(law, stretch, slip, normal, action.push.value);
-  const Vector3 drag = -law.grip * grip.stretch;
+  const ContactGrip grip = contact_grip(law, stretch, slip, normal, action.push.value, root.value);
+  const Vector3 drag = -law.grip * grip.pull;
   action.memory.stretch = half.rotation * grip.stretch;
   action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
   action.wrench.head<3>() += drag;
@@ -97,8 +97,9 @@ void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMoti
   const Matrix3 slip_by_line_turn = hat(middle) + hat(offset);
   const Matrix3 by_end = -law.grip * (grip.by_slip * slip_by_end + grip.by_normal * normal_by_end);
   const Matrix3 by_turn = law.grip * grip.by_slip * hat(offset);
-  const Matrix3 by_line_turn = -law.grip * grip.by_slip * (slip_by_line_turn - hat(stretch) * half.spin);
-  const Vector3 by_distance = law.grip * action.push.slope * grip.by_push;
+  const Matrix3 by_line_turn =
+      -law.grip * (grip.by_slip * slip_by_line_turn - grip.by_slip / root.value * hat(stretch) * half.spin);
+  const Vector3 by_distance = law.grip * (action.push.slope * grip.by_push + root.slope * grip.by_root);
   const Matrix3 couple = hat(offset);
   action.by_end.topRows<3>() += by_end;
   action.by_end.bottomRows<3>() += couple * by_end + radii.ball * hat(drag) * normal_by_end;
@@ -135,7 +136,10 @@ LineAction line_action(const ContactLaw& law, const LineRadii& radii, const Line
   out.dissipated += out.push.dissipated;
   out.work = out.push.value * (start - end_start);
   if (!motion.at_end) add_line_push(radii, motion, with_slope, out);
-  if (law.friction > 0) add_line_grip(law, radii, motion, memory, with_slope, out);
+  if (!(law.friction > 0)) return out;
+  const GripRoot root = grip_root(law, change.end, motion.duration);
+  if (change.end > 0) out.memory.root = root.value;
+  add_line_grip(law, radii, motion, memory, root, with_slope, out);
   return out;
 }
 

@@ -16,11 +16,12 @@ struct LineMotion {
 };
 /// What a contact remembers from step to step. All numbers are zero without contact.
 struct LineMemory {
-  static constexpr int kSize = 6;
+  static constexpr int kSize = 7;
   double speed = 0;                   ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();  ///< of friction, see ContactGrip; in world axes, rotates with the line [m]
   double stiffening = 0;              ///< factor of the law's stiffnesses, constant during a contact; 0: not set yet
   double start = 0;                   ///< offset of the penetration, see let_out() [m]
+  double root = 0;                    ///< of the hardening of the grip, see grip_root(); 0: not known yet
 };
 /// The forces on the ball: a force through its middle and a couple. The opposite wrench acts on the line, about the
 /// same middle. For forces at an instant, the wrench has only friction; `push` then acts along the normal, on the

@@ -21,12 +21,24 @@ struct Pushed {
   Vector3 normal;       ///< unit vector
   Matrix3 by_end;       ///< derivative of the normal with respect to the point at the end
   Vector3 push_by_end;  ///< derivative of the push with respect to the point at the end
+  double root;          ///< see grip_root()
+  Vector3 root_by_end;  ///< its derivative with respect to the point at the end
 };
-Pushed pushed(const GapChange& gap, const ContactPush& push) {
+Pushed pushed(const GapChange& gap, const ContactPush& push, const GripRoot& root) {
   const double length = gap.gradient.norm();
   const Vector3 normal = gap.gradient / length;
-  return {push.value, normal, (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length,
-          -push.slope * gap.end_gradient};
+  return {push.value,
+          normal,
+          (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length,
+          -push.slope * gap.end_gradient,
+          root.value,
+          -root.slope * gap.end_gradient};
+}
+
+/// Derivative of a grip's pull with respect to the point at the end, but for that by the slip.
+Matrix3 pull_by_end(const ContactGrip& grip, const Pushed& pushed) {
+  return grip.by_normal * pushed.by_end + grip.by_push * pushed.push_by_end.transpose() +
+         grip.by_root * pushed.root_by_end.transpose();
 }
 
 /// Adds friction, which acts at the surface of the ball.
@@ -34,8 +46,8 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
               const Vector3& stretch, bool with_slope, PointAction& action) {
   const Vector3 offset = -radius * pushed.normal;
   const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
-  const ContactGrip grip = contact_grip(law, stretch, slip, pushed.normal, pushed.push);
-  const Vector3 drag = -law.grip * grip.stretch;
+  const ContactGrip grip = contact_grip(law, stretch, slip, pushed.normal, pushed.push, pushed.root);
+  const Vector3 drag = -law.grip * grip.pull;
   action.memory.stretch = grip.stretch;
   action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
   action.wrench.head<3>() += drag;
@@ -44,8 +56,7 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   const Matrix3& by_end = pushed.by_end;
   const Matrix3 slip_by_end = Matrix3::Identity() - radius * hat(motion.turn) * by_end;
   Eigen::Matrix<double, 3, 6> drag_slope;
-  drag_slope << grip.by_slip * slip_by_end + grip.by_normal * by_end + grip.by_push * pushed.push_by_end.transpose(),
-      -grip.by_slip * hat(offset);
+  drag_slope << grip.by_slip * slip_by_end + pull_by_end(grip, pushed), -grip.by_slip * hat(offset);
   drag_slope *= -law.grip;
   action.slope.topRows<3>() += drag_slope;
   action.slope.bottomRows<3>() = hat(offset) * drag_slope;
@@ -55,14 +66,13 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
 /// Adds the resistance to rotation relative to the surface.
 void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushed& pushed, const Vector3& turned,
                    bool with_slope, PointAction& action) {
-  const ContactGrip grip = turn_grip(law, turned, motion.turn, pushed.normal, pushed.push);
-  const Vector3 couple = -law.turn_grip * grip.stretch;
+  const ContactGrip grip = turn_grip(law, turned, motion.turn, pushed.normal, pushed.push, pushed.root);
+  const Vector3 couple = -law.turn_grip * grip.pull;
   action.memory.turned = grip.stretch;
   action.dissipated += -couple.dot(motion.turn) - 0.5 * law.turn_grip * grip.stretch.squaredNorm();
   action.wrench.tail<3>() += couple;
   if (!with_slope) return;
-  action.slope.bottomLeftCorner<3, 3>() -=
-      law.turn_grip * (grip.by_normal * pushed.by_end + grip.by_push * pushed.push_by_end.transpose());
+  action.slope.bottomLeftCorner<3, 3>() -= law.turn_grip * pull_by_end(grip, pushed);
   action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
 }
 
@@ -199,7 +209,10 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
     out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
   out.wrench.head<3>() = push.value * gap.gradient;
   if (gap.gradient.isZero(0)) return out;
-  const Pushed pushed = flexarm::pushed(gap, push);
+  if (!(law.friction > 0) && !law.resists_turns()) return out;
+  const GripRoot root = grip_root(law, change.end, motion.duration);
+  if (change.end > 0) out.memory.root = root.value;
+  const Pushed pushed = flexarm::pushed(gap, push, root);
   if (law.friction > 0) add_grip(law, radius, motion, pushed, memory.stretch, with_slope, out);
   if (law.resists_turns()) add_turn_grip(law, motion, pushed, memory.turned, with_slope, out);
   return out;
@@ -215,10 +228,11 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
   const double rate = let_out_rate(law, memory.start) - distance.gradient.dot(velocity);
   out.push = push_at(law, penetration, rate, approach_speed(penetration, rate, memory.speed));
   // As in a step without motion.
+  const double root = memory.root > 0 ? memory.root : grip_root(law, penetration, 0).value;
   if (law.friction > 0)
-    out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push).stretch;
+    out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push, root).pull;
   if (law.resists_turns())
-    out.couple = -law.turn_grip * turn_grip(law, memory.turned, Vector3::Zero(), out.normal, out.push).stretch;
+    out.couple = -law.turn_grip * turn_grip(law, memory.turned, Vector3::Zero(), out.normal, out.push, root).pull;
   return out;
 }
 

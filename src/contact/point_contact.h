@@ -28,13 +28,14 @@ struct PointMotion {
 };
 /// What the contact of one point and one shape remembers from step to step. All numbers are zero without contact.
 struct PointMemory {
-  static constexpr int kSize = 10;
+  static constexpr int kSize = 11;
   double speed = 0;                   ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();  ///< of friction, see ContactGrip [m]
   int face = 0;                       ///< face by which a corner has entered; 0: none
   double within = 0;                  ///< depth below that face from which on forces begin [m]
   double start = 0;                   ///< offset of the penetration, see let_out() [m]
   Vector3 turned = Vector3::Zero();   ///< stretch of the resistance to turning, see turn_grip() [rad]
+  double root = 0;                    ///< of the hardening of the grips, see grip_root(); 0: not known yet
 };
 /// The forces on the ball: a force through its middle and a couple, conjugate to the displacement and to the rotation.
 /// The wrench is NaN at an instant with too deep a penetration.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace flexarm::test {
@@ -195,6 +196,29 @@ Vector3 random_vector(std::mt19937& generator, double size) {
   return {number(generator), number(generator), number(generator)};
 }
 
+TEST(GripRoot, HardensAsTheNormalForceDoes) {
+  ContactLaw law;
+  law.stiffness = 500;
+  law.frequency = 20;
+  law.depth = 0.01;
+  for (const double penetration : {0.001, 0.004, 0.006}) {
+    const GripRoot root = grip_root(law, penetration, 1e-5);
+    EXPECT_NEAR(root.value * root.value, contact_push(law, {0, penetration, 0}).slope / law.stiffness,
+                1e-12 * root.value * root.value);
+    const double h = 1e-8;
+    const double slope =
+        (grip_root(law, penetration + h, 1e-5).value - grip_root(law, penetration - h, 1e-5).value) / (2 * h);
+    EXPECT_NEAR(root.slope, slope, 1e-6 * root.slope);
+  }
+  EXPECT_EQ(grip_root(law, -0.001, 1e-5).value, 1);
+  // What sticks turns by no more than the best angle in a step.
+  const GripRoot pressed = grip_root(law, 0.009, 0.01);
+  EXPECT_NEAR(pressed.value * law.frequency * 0.01, 4, 1e-14);
+  EXPECT_EQ(pressed.slope, 0);
+  law.depth = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(grip_root(law, 1, 1e-5).value, 1);
+}
+
 TEST(ContactGrip, HasItsSlopesAndDissipates) {
   std::mt19937 generator(5);
   ContactLaw law;
@@ -204,12 +228,14 @@ TEST(ContactGrip, HasItsSlopesAndDissipates) {
   for (int i = 0; i < 300; ++i) {
     const Vector3 stretch = random_vector(generator, 0.01), slip = random_vector(generator, 0.02);
     const Vector3 normal = random_vector(generator, 1).normalized();
-    const double push = 1.5 * (1 + i % 2);
-    const ContactGrip here = contact_grip(law, stretch, slip, normal, push);
+    const double push = 1.5 * (1 + i % 2), root = 1 + 0.2 * (i % 5);
+    const ContactGrip here = contact_grip(law, stretch, slip, normal, push, root);
     const auto at = [&](const Vector3& ds, const Vector3& dn, double dp) {
-      return contact_grip(law, stretch, slip + ds, normal + dn, push + dp).stretch;
+      return contact_grip(law, stretch, slip + ds, normal + dn, push + dp, root).pull;
     };
+    const auto pull_at = [&](double r) { return contact_grip(law, stretch, slip, normal, push, r).pull; };
     const double h = 1e-7;
+    EXPECT_LE(((pull_at(root + h) - pull_at(root - h)) / (2 * h) - here.by_root).norm(), 1e-6);
     for (int k = 0; k < 3; ++k) {
       const Vector3 by = h * Vector3::Unit(k);
       const Vector3 zero = Vector3::Zero();
@@ -220,12 +246,13 @@ TEST(ContactGrip, HasItsSlopesAndDissipates) {
         ((at(Vector3::Zero(), Vector3::Zero(), h) - at(Vector3::Zero(), Vector3::Zero(), -h)) / (2 * h) - here.by_push)
             .norm(),
         1e-6);
-    const double size = law.grip * here.stretch.norm(), most = law.friction * push;
+    EXPECT_LE((here.pull - root * here.stretch).norm(), 1e-16);
+    const double size = law.grip * here.pull.norm(), most = law.friction * push;
     EXPECT_LE(size, most * (1 + 1e-14));
     EXPECT_NEAR(here.stretch.dot(normal), 0, 1e-16);
     sliding += size > most * (1 - 1e-14);
     const double dissipated =
-        law.grip * (here.stretch.dot(slip) - 0.5 * (here.stretch - stretch).dot(here.stretch + stretch));
+        law.grip * (here.pull.dot(slip) - 0.5 * (here.stretch - stretch).dot(here.stretch + stretch));
     EXPECT_GE(dissipated, -1e-16);
   }
   EXPECT_GT(sliding, 30);

@@ -49,6 +49,25 @@ TEST(Contact, HitsGiveBackWhatTheyAreAskedFor) {
         EXPECT_NEAR(restitution_seen(e, step, speed), e, 0.01) << step << speed;
 }
 
+// Friction grips harder as the contact hardens, so that it reaches Coulomb's force also in hard hits.
+TEST(Contact, SlidingHitsHaveCoulombsImpulse) {
+  constexpr double kFriction = 0.3;
+  for (const double radius : {0.01, 0.1})
+    for (const double speed : {0.1, 3.0, 30.0})
+      for (const double e : {0.3, 0.8}) {
+        const double along = 8 * kFriction * (1 + e) * speed;  // a hit takes less than half of the slip
+        Simulation simulation =
+            simulation_of(ball("ball", 2, radius) + floating("ball") + kFloor +
+                              contact_of("ball", "floor", fmt::format("restitution='{}' friction='{}'", e, kFriction)),
+                          start("ball", {0, 0, 1.01 * radius}, {along, 0, -speed}), 1e-3, {0, 0, 0});
+        while (simulation.momentum().z() <= 0 || simulation.link_pose(1).position.z() < radius)
+          ASSERT_TRUE(simulation.step().converged && simulation.time() < 0.5) << radius << " " << speed;
+        const Vector3 velocity = simulation.momentum() / 2;
+        EXPECT_NEAR((along - velocity.x()) / (kFriction * (velocity.z() + speed)), 1, 0.01)
+            << radius << " m, " << speed << " m/s, restitution " << e;
+      }
+}
+
 /// Times between the hits of a ball, of which each begins with the speed v of the last one times e(v): recursion.
 std::vector<double> flights(double speed, double gravity, int count) {
   std::vector<double> out;

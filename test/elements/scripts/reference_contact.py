@@ -141,9 +141,16 @@ def normal_force(p0, p1, h, stiffness, omega=1.0, damping=0.0, speed=0.0, depth=
     return force * factor, slope * factor + force * (alpha + by_alpha * (p1 - p0)) / h
 
 
+def grip_factor(share):
+    """Return V''(p) / k at p = share of the depth, by which the tangential stiffness hardens."""
+    s2 = share**2
+    return (1 + 18 * s2 + 21 * s2**2) / (1 - s2) ** 6
+
+
 def friction_force(memory, slip, normal, force, limit, stiffness):
     """Return (new memory, its derivatives with respect to slip, unit normal and normal force). The force on B is
-    stiffness * memory."""
+    stiffness * memory. With a tangential stiffness of stiffness * root**2: root * slip and force / root in place of slip
+    and force, and the force on B is root times as large."""
     whole = memory + slip
     projector = I3 - np.outer(normal, normal)
     trial = projector @ whole

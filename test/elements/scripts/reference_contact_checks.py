@@ -316,6 +316,44 @@ def test_friction_of_curves():
         assert abs(moment_sum).max() < 1e-14
 
 
+def test_hardened_grip():
+    """The factor is that of the normal stiffness, and no energy is gained, however it changes from step to step."""
+    rng = np.random.default_rng(6)
+    for share in rng.uniform(0.05, 0.9, size=50):
+        h = 1e-4 * (1 - share)
+        energy = [0.5 * (s / (1 - s**2) ** 2) ** 2 for s in (share - h, share, share + h)]
+        curvature = (energy[0] - 2 * energy[1] + energy[2]) / h**2
+        assert abs(contact.grip_factor(share) / curvature - 1) < 1e-5  # h^2 times the fourth derivative
+    memory, normal, stiffness, friction = np.zeros(3), np.array([0.0, 0.0, 1.0]), 3.0, 0.4
+    for _ in range(5000):
+        slip, force, root = 0.3 * rng.normal(size=3), rng.uniform(0, 4), rng.uniform(1, 5)
+        after = contact.friction_force(memory, root * slip, normal, force / root, friction, stiffness)[0]
+        pull = stiffness * root * after
+        assert np.linalg.norm(pull) <= friction * force * (1 + 1e-14)
+        assert pull @ slip - 0.5 * stiffness * (after @ after - memory @ memory) > -1e-14
+        memory = after
+
+
+@pytest.mark.parametrize("restitution, damping", [(0.5, 1.4328), (0.8, 0.37315)])
+@pytest.mark.parametrize("across, along", [(3, 10), (30, 100), (0.3, 2)])
+def test_sliding_hits_have_coulombs_impulse(restitution, damping, across, along):
+    """A ball of 1 kg, radius 20 mm and the inertia of a solid sphere, against a floor with a depth of 2 mm."""
+    stiffness, friction, depth, lever = (np.pi / 0.01) ** 2, 0.3, 2e-3, 3.5  # lever: 1 + m r^2 / J
+    p, rate, slip, memory, impulse, pulled = 0.0, across, along, 0.0, 0.0, 0.0
+    while p >= 0:
+        s2 = (p / depth) ** 2
+        stiffest = np.sqrt(stiffness * contact.grip_factor(p / depth))
+        h = min(1e-6, 1e-3 * (depth - p) / across, 0.01 / stiffest)
+        force = stiffness * p * (1 + 3 * s2) / (1 - s2) ** 5 * max(0, 1 + damping * rate / across)
+        root = np.sqrt(contact.grip_factor(p / depth))
+        memory = min(memory + root * slip * h, friction * force / (stiffness * root))
+        pull = stiffness * root * memory
+        rate, slip = rate - force * h, slip - lever * pull * h
+        p, impulse, pulled = p + rate * h, impulse + force * h, pulled + pull * h
+    assert abs(-rate / across - restitution) < 0.01
+    assert abs(pulled / (friction * impulse) - 1) < 0.01
+
+
 def test_resistance_to_spinning_and_rolling():
     """Derivatives, and that no energy is gained for any memory."""
     rng = np.random.default_rng(4)
