@@ -231,6 +231,7 @@ class ContactBuilder {
     request.softest = hints.stiffness.value_or(kInfinity);
     request.restitution = contact.restitution;
     request.friction = contact.friction.value_or(hints.friction.value_or(0));
+    request.grip = contact.grip;
     ContactLaw law = law_of_points(request);
     const double size = std::min(stations.size, shapes.size);
     law.depth = kContactDepth * size;

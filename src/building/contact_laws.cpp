@@ -21,7 +21,7 @@ ContactLaw law_of_points(const LawRequest& request) {
   law.frequency = std::sqrt(law.stiffness * request.at_a_time / request.mass);
   law.restitution = {request.restitution.values, request.restitution.speeds};
   law.friction = request.friction;
-  law.grip = std::min(law.stiffness, kStiffestGrip * usual);
+  law.grip = std::min(request.grip * law.stiffness, kStiffestGrip * usual);
   return law;
 }
 

@@ -23,6 +23,7 @@ struct LawRequest {
   double softest = std::numeric_limits<double>::infinity();  ///< bound of a stiffness that is not given [N/m]
   scene::RestitutionDescription restitution = {};
   double friction = 0;
+  double grip = 1;  ///< stiffness of sticking friction, relative to that of the normal force
 };
 /// Law of each point, without a depth. (docs/notes/contact.md 2, 3)
 ContactLaw law_of_points(const LawRequest& request);

@@ -72,13 +72,14 @@ bool is_contact(const XmlElement& element) {
 }
 
 ContactDescription read_contact(const XmlElement& contact) {
-  contact.expect_only(
-      {"first", "second", "contact_time", "stiffness", "restitution", "speeds", "friction", "spinning", "rolling"});
+  contact.expect_only({"first", "second", "contact_time", "stiffness", "restitution", "speeds", "friction", "grip",
+                       "spinning", "rolling"});
   ContactDescription out;
   static_cast<ContactPair&>(out) = read_pair(contact);
   read_hardness(contact, out.contact_time, out.stiffness);
   out.restitution = read_restitution(contact);
   if (contact.has("friction")) out.friction = contact.number("friction", kNonNegative);
+  out.grip = contact.number("grip", kPositive, out.grip);
   out.spinning = contact.number("spinning", kNonNegative, 0);
   out.rolling = contact.number("rolling", kNonNegative, 0);
   return out;

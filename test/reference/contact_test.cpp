@@ -68,6 +68,24 @@ TEST(Contact, SlidingHitsHaveCoulombsImpulse) {
       }
 }
 
+// While a hit sticks, its slip swings as cos(w t), w^2 = grip k (1 / m + r^2 / J), for the time pi sqrt(m / k). Forces
+// at the end of a step damp it with a ratio of w h / 4; the hardening changes the phase by less.
+TEST(Contact, HitsThatStickReboundByTheGrip) {
+  constexpr double kSpeed = 0.05, kStep = 1e-6, kTime = 1e-3;
+  for (const double grip : {0.5, 1.0, 4.0}) {
+    Simulation simulation = simulation_of(
+        ball("ball", 1, 0.05) + floating("ball") + kFloor +
+            contact_of("ball", "floor",
+                       fmt::format("restitution='1' friction='2' contact_time='{}' grip='{}'", kTime, grip)),
+        start("ball", {0, 0, 0.05 + 1e-6}, {kSpeed, 0, -0.3}), kStep, {0, 0, 0});
+    while (simulation.momentum().z() <= 0 || simulation.link_pose(1).position.z() < 0.05)
+      ASSERT_TRUE(simulation.step().converged && simulation.time() < 3 * kTime);
+    const double rate = kPi / kTime * std::sqrt(3.5 * grip), phase = rate * kTime;
+    const double expected = kSpeed * (1 - (1 - std::cos(phase)) / 3.5);
+    EXPECT_NEAR(simulation.momentum().x(), expected, kSpeed / 3.5 * (rate * kStep / 4 * phase + 0.01 * phase)) << grip;
+  }
+}
+
 /// Times between the hits of a ball, of which each begins with the speed v of the last one times e(v): recursion.
 std::vector<double> flights(double speed, double gravity, int count) {
   std::vector<double> out;

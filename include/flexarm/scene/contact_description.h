@@ -40,6 +40,7 @@ struct ContactDescription : ContactPair {
   std::optional<double> contact_time = {};  ///< as JointLimits::contact_time
   RestitutionDescription restitution = {};
   std::optional<double> friction = {};  ///< Coulomb coefficient; empty: from the surfaces of the links, else 0
+  double grip = 1;  ///< stiffness along the surface while friction sticks, relative to that across the surface
   /// Torsional and rolling friction: the resisting moment about the normal, and across it, is at most this length times
   /// the normal force of each point [m].
   double spinning = 0, rolling = 0;
