@@ -108,6 +108,7 @@ class ContactBuilder {
       all_fixed = all_fixed && frame.node < 0;
       for (const ContactShape& shape : shapes_of(collision, frame.offset, link)) add(shape, frame.node, side);
     }
+    if (!std::isfinite(side.size)) side.size = spread_of_points(side);
     side.is_fixed = side.is_fixed || (all_fixed && !side.surfaces.empty());
     if (model_.links[index].beam) side.mass = model_.links[index].beam->mass;
     return side;
@@ -118,8 +119,18 @@ class ContactBuilder {
     auto surface = std::find_if(side.surfaces.begin(), side.surfaces.end(), on_node);
     if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
     surface->shapes.push_back(shape);
-    side.size = std::min(side.size, half_width(shape));
+    if (const double size = half_width(shape); size > 0) side.size = std::min(side.size, size);  // or it is a point
     if (node >= 0) side.mass = mass_of_body(model_, node);
+  }
+
+  /// Half of the distance between the farthest points of a side that has points only; infinite for one point [m].
+  static double spread_of_points(const Side& side) {
+    double farthest = 0;
+    for (const ContactSurface& surface : side.surfaces)
+      for (const ContactShape& one : surface.shapes)
+        for (const ContactShape& other : surface.shapes)
+          farthest = std::max(farthest, (one.place.position - other.place.position).norm());
+    return farthest > 0 ? 0.5 * farthest : kInfinity;
   }
 
   /// Adds a tube of the section's largest radius along the line of the nodes, with stations at equal distances.
@@ -233,11 +244,11 @@ class ContactBuilder {
     request.friction = contact.friction.value_or(hints.friction.value_or(0));
     request.grip = contact.grip;
     ContactLaw law = law_of_points(request);
-    const double size = std::min(stations.size, shapes.size);
+    const double size = std::min(stations.size, shapes.size), turned = std::isfinite(size) ? size : model_.length_scale;
     law.depth = kContactDepth * size;
     law.spinning = contact.spinning;
     law.rolling = contact.rolling;
-    law.turn_grip = law.grip * kTurnedLever * kTurnedLever * size * size;
+    law.turn_grip = law.grip * kTurnedLever * kTurnedLever * turned * turned;
     return law;
   }
 

@@ -138,6 +138,7 @@ class PictureMaker {
 
   /// Returns why a shape cannot be shown; empty: it is.
   std::string add_shape(const scene::VisualDescription& visual, PictureLink& link) {
+    if (scene::is_point(visual)) return "";
     PictureShape shape{visual.origin, {}, visual.color};
     try {
       std::visit(

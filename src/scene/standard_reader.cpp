@@ -304,7 +304,7 @@ void warn_of_untouchable_shapes(const XmlElement& robot) {
       if (child.tag() != "collision" || shape_of_urdfdom(child.xml())) continue;
       const std::optional<XmlElement> geometry = child.child("geometry");
       const tinyxml2::XMLElement* shape = geometry ? geometry->xml().FirstChildElement() : nullptr;
-      child.warning("touches nothing: its shape must be a box, cylinder, sphere or mesh that has an extent",
+      child.warning("touches nothing: its shape must be a box, cylinder or mesh that has an extent, or a sphere",
                     shape ? quoted(printed(*shape)) : "");
     }
   }

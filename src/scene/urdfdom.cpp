@@ -72,8 +72,9 @@ bool is_extent(double length) {
   return std::isfinite(length) && length > 0;
 }
 
-/// Converts a shape. Returns nothing if its dimensions are not finite and positive.
-std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry& geometry) {
+/// Converts a shape. Returns nothing if its dimensions are not finite and positive. A sphere that touches may be a
+/// point.
+std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry& geometry, bool touches) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
     const Vector3 size = vector(box->dim);
     if (size.allFinite() && size.minCoeff() > 0) return BoxShape{size};
@@ -81,7 +82,7 @@ std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry&
     if (is_extent(cylinder->radius) && is_extent(cylinder->length))
       return CylinderShape{cylinder->radius, cylinder->length};
   } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry)) {
-    if (is_extent(sphere->radius)) return SphereShape{sphere->radius};
+    if (is_extent(sphere->radius) || (touches && sphere->radius == 0)) return SphereShape{sphere->radius};
   } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry)) {
     MeshShape shape{mesh->filename, vector(mesh->scale)};
     std::replace(shape.url.begin(), shape.url.end(), kPercent, '%');
@@ -124,7 +125,7 @@ std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& el
   if (!link || (!link->visual && !link->collision)) return std::nullopt;
   const urdf::GeometrySharedPtr geometry = link->visual ? link->visual->geometry : link->collision->geometry;
   if (!geometry) return std::nullopt;
-  const auto shape = shape_of(*geometry);
+  const auto shape = shape_of(*geometry, !link->visual);
   const auto& [position, rotation] = link->visual ? link->visual->origin : link->collision->origin;
   const Pose origin{vector(position), Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
   if (!shape || !origin.position.allFinite() || !origin.orientation.coeffs().allFinite()) return std::nullopt;

@@ -21,7 +21,7 @@ std::vector<std::string> errors_of_urdfdom(std::string document);
 std::optional<std::string> refusal_of_urdfdom(std::string document);
 
 /// Reads the shape of a <visual> or <collision> of a link, with its colour. The element must be one without errors of
-/// urdfdom. Returns nothing if the shape has no extent.
+/// urdfdom. Returns nothing if the shape has no extent; the sphere of a <collision> may be a point.
 std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& element);
 
 /// Returns the element as XML text. Character references occur only where XML requires them.

@@ -54,6 +54,22 @@ TEST(ContactOfBodies, WhatStaysInContactHasOrderTwo) {
   EXPECT_NEAR(observed_order(coarse, fine), 2, 0.05);
 }
 
+// Three spheres of radius 0 are points: 1 kg stands on them, with a third of its weight each.
+TEST(ContactOfBodies, BodyStandsOnPoints) {
+  std::string feet;
+  for (const Vector3& foot : {Vector3(0.1, 0.1, 0), Vector3(-0.1, 0.1, 0), Vector3(0, -0.2, 0)})
+    feet += collision("<sphere radius=\"0\"/>", foot);
+  Simulation simulation =
+      simulation_of(body("table", 1, Vector3::Constant(0.1), Vector3::Zero(), feet) + floating("table") + kFloor +
+                        contact_of("table", "floor", "friction='0.5' stiffness='1e4'"),
+                    start("table", {0, 0, 0.02}, {0.1, 0, 0}), 1e-3);
+  run(simulation, 3000);
+  const Pose pose = simulation.link_pose(1);
+  EXPECT_NEAR(pose.position.z(), -kG / 3 / 1e4, 2e-6);  // the law hardens by 8 (p / depth)^2 = 8 (0.33 mm / 16 mm)^2
+  EXPECT_NEAR(pose.orientation.angularDistance(Quaternion::Identity()), 0, 1e-9);
+  EXPECT_LT(simulation.momentum().norm(), 1e-9);
+}
+
 // A ball lies in a wedge, whose walls push with m g / (2 cos a) each.
 TEST(ContactOfBodies, BallComesToRestInAWedge) {
   constexpr double kMass = 1, kRadius = 0.05, kStiffness = 1e5, kSlope = 0.6;

@@ -32,4 +32,10 @@ struct VisualDescription {
   std::optional<Color> color = {};  ///< of the <material>
 };
 
+/// Whether the shape is a point, which touches but is not shown.
+inline bool is_point(const VisualDescription& visual) {
+  const auto* sphere = std::get_if<SphereShape>(&visual.shape);
+  return sphere && sphere->radius == 0;
+}
+
 }  // namespace flexarm::scene
