@@ -56,11 +56,7 @@ class Unloaded {
   }
   /// The general forces without those on multipliers, which would pull loops apart.
   Eigen::VectorXd on_bodies(Eigen::VectorXd general) const {
-    const DegreesOfFreedom& dof = system_.degrees_of_freedom();
-    for (std::size_t k = 0; k < model_.closures.size(); ++k) {
-      const int variable = dof.variable_of_closure(static_cast<int>(k));
-      for (int i = 0; i < dof.size[variable]; ++i) general[dof.equation[dof.first[variable] + i]] = 0;
-    }
+    for (const int equation : multiplier_equations(model_, system_.degrees_of_freedom())) general[equation] = 0;
     return general;
   }
   void move(const Eigen::VectorXd& motion) {

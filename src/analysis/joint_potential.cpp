@@ -43,9 +43,7 @@ JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const
       coordinates_.push_back(
           {dof.equation[dof.scalar_of(coordinate)], c, is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
   }
-  for (int k = 0; k < static_cast<int>(model.closures.size()); ++k)
-    for (std::size_t i = 0; i < model.closures[k].constraints.size(); ++i)
-      multipliers_.push_back(dof.equation[dof.first[dof.variable_of_closure(k)] + static_cast<int>(i)]);
+  multipliers_ = multiplier_equations(model, dof);
   axes_ = coordinates_;
   find_bounds();
 }

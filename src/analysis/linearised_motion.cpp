@@ -51,9 +51,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
 
 int LinearisedMotion::freedoms() const {
   // Each multiplier of a loop removes two unknowns: itself, since it has no mass, and the motion that it constrains.
-  int freedoms = unknowns();
-  for (const LoopClosure& closure : model_.closures) freedoms -= 2 * static_cast<int>(closure.constraints.size());
-  return freedoms;
+  return unknowns() - 2 * multiplier_count(model_);
 }
 
 LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& tangent) {
@@ -81,10 +79,7 @@ void LinearisedMotion::balance() {
 /// Sets the multipliers of loops so that they balance the residual best, since their forces stiffen the mechanism as
 /// loads do.
 void LinearisedMotion::find_multipliers() {
-  std::vector<int> multipliers;
-  for (std::size_t k = 0; k < model_.closures.size(); ++k)
-    for (std::size_t i = 0; i < model_.closures[k].constraints.size(); ++i)
-      multipliers.push_back(dof_.equation[dof_.first[dof_.variable_of_closure(static_cast<int>(k))] + i]);
+  const std::vector<int> multipliers = multiplier_equations(model_, dof_);
   if (multipliers.empty()) return;
   Eigen::MatrixXd forces(unknowns(), static_cast<Eigen::Index>(multipliers.size()));
   for (std::size_t m = 0; m < multipliers.size(); ++m)

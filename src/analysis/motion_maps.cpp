@@ -28,10 +28,11 @@ State state_at(const MechanismPose& pose) {
 }
 
 MotionMaps::MotionMaps(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model), dof_(dof), rows_(dof.scalar_count), columns_(dof.unknowns) {
-  for (const LoopClosure& closure : model.closures) constraint_count_ += static_cast<int>(closure.constraints.size());
-  rows_ -= constraint_count_;  // multipliers come last
-  columns_ -= constraint_count_;
+    : model_(model),
+      dof_(dof),
+      constraint_count_(multiplier_count(model)),
+      rows_(dof.scalar_count - constraint_count_),  // multipliers come last
+      columns_(dof.unknowns - constraint_count_) {
   sort_nodes();
 }
 

@@ -65,7 +65,7 @@ class MotionMaps {
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
-  int rows_, columns_, constraint_count_ = 0;
+  int constraint_count_, rows_, columns_;
   std::vector<int> carriers_;  // per node that is no slave: the slave that carries its link, -1: the world
   std::vector<int> order_;     // nodes in an order in which masters and carriers come first
 };

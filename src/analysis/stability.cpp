@@ -213,7 +213,7 @@ Stability judge_stability(const Model& model, const State& equilibrium) {
   if (system.freedoms() <= 0) return stability;
   const double neutral = neutral_curvature(model, equilibrium);
   const Matrix curvature = system.curvature();
-  const SoftMotions soft(curvature, (system.unknowns() - system.freedoms()) / 2);
+  const SoftMotions soft(curvature, multiplier_count(model));
   std::vector<Eigen::VectorXd> unstable;
   for (const std::vector<Eigen::VectorXd>* motions : {&soft.unstable, &soft.of_pivots})
     for (const Eigen::VectorXd& motion : *motions) {

@@ -116,11 +116,11 @@ Eigen::VectorXd curvatures(const Model& model, const DegreesOfFreedom& dof, cons
 
 /// Name of the closure that has a row of the Jacobian.
 std::string name_of_row(const Model& model, int row) {
-  for (const LoopClosure& closure : model.closures) {
-    row -= static_cast<int>(closure.constraints.size() + closure.implied.size());
-    if (row < 0) return closure.name;
-  }
-  return "";
+  std::string name;
+  for_each_constraint(model, Constraints::All, [&](const LoopClosure& closure, const ClosureConstraint&) {
+    if (row-- == 0) name = closure.name;
+  });
+  return name;
 }
 
 /// Name of a joint that closes a loop which starts at a dead point; empty if there is none. `jacobian`: of all

@@ -17,8 +17,7 @@ int dependent_closure(const Model& model, const DegreesOfFreedom& dof, Configura
   std::vector<bool> is_free(dof.scalar_count);
   for (int i = 0; i < dof.scalar_count; ++i) is_free[i] = dof.equation[i] >= 0;
   std::vector<int> closures;  // per row
-  for (std::size_t k = 0; k < model.closures.size(); ++k)
-    closures.insert(closures.end(), model.closures[k].constraints.size(), static_cast<int>(k));
+  for_each_multiplier(model, dof, [&](int closure, int, int) { closures.push_back(closure); });
   const Kinematics kinematics(model, dof, std::move(configuration));
   const ConstraintRows jacobian = closure_jacobian(kinematics, Constraints::WithMultipliers);
   for (const ConstraintGroup& group : independent_groups(with_columns(jacobian, is_free))) {

@@ -75,7 +75,7 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
   for (std::size_t column = 0; column < roots_.size(); ++column)
     root_column_[roots_[column]] = static_cast<int>(column);
   for (const Follower& follower : followers_) root_column_[follower.rate] = root_column_[follower.leader_rate];
-  for_each_constraint(model, Constraints::WithMultipliers, [&](const auto&, const auto&) { ++rows_; });
+  rows_ = multiplier_count(model);
   closure_forces_.assign(model.closures.size(), Vector6::Zero());
   any_ = !motions_.empty() || !followers_.empty() || rows_ > 0;
   if (!any_) return;

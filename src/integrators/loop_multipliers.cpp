@@ -15,11 +15,7 @@ LoopMultipliers::LoopMultipliers(const StepConfiguration& configuration) : confi
 
 template <class Visit>
 void LoopMultipliers::for_each(const Visit& visit) const {
-  const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
-  for (std::size_t k = 0; k < values_.size(); ++k) {
-    const int first = dof.first[dof.variable_of_closure(static_cast<int>(k))];
-    for (int i = 0; i < values_[k].size(); ++i) visit(k, i, dof.equation[first + i]);
-  }
+  for_each_multiplier(configuration_.model(), configuration_.degrees_of_freedom(), visit);
 }
 
 void LoopMultipliers::begin() {
@@ -27,12 +23,12 @@ void LoopMultipliers::begin() {
 }
 
 void LoopMultipliers::extrapolate(const IncrementHistory& history) {
-  for_each([&](std::size_t k, int i, int equation) { values_[k][i] = history.increments[0][equation]; });
+  for_each([&](int k, int i, int equation) { values_[k][i] = history.increments[0][equation]; });
 }
 
 void LoopMultipliers::update(const Eigen::VectorXd& increment) {
   assert(increment.size() == configuration_.degrees_of_freedom().unknowns);
-  for_each([&](std::size_t k, int i, int equation) { values_[k][i] += increment[equation]; });
+  for_each([&](int k, int i, int equation) { values_[k][i] += increment[equation]; });
 }
 
 double LoopMultipliers::end_weight() const {
@@ -69,7 +65,7 @@ void LoopMultipliers::evaluate(Balance& balance) const {
 }
 
 void LoopMultipliers::remember(IncrementHistory& history) const {
-  for_each([&](std::size_t k, int i, int equation) { history.increments[0][equation] = values_[k][i]; });
+  for_each([&](int k, int i, int equation) { history.increments[0][equation] = values_[k][i]; });
 }
 
 LoopMultipliers::Opening LoopMultipliers::largest_opening() const {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "joints/kinematics.h"
 #include "math/pack.h"
 #include "math/simd.h"
 
@@ -71,14 +72,10 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof)
   for (const Coordinate& coordinate : model.coordinates)
     add(dof.equation[dof.scalar_of(coordinate)], is_rotation(model, coordinate));
   mass_ = mass_of(model);
-  for (std::size_t k = 0; k < model.closures.size(); ++k) {
-    const int first = dof.first[dof.variable_of_closure(static_cast<int>(k))];
-    const std::vector<ClosureConstraint>& constraints = model.closures[k].constraints;
-    for (std::size_t i = 0; i < constraints.size(); ++i) {
-      const bool is_gap = constraints[i].kind == ClosureConstraint::Kind::Gap;
-      multipliers_.push_back({dof.equation[first + i], is_gap ? 1.0 : length_});
-    }
-  }
+  for_each_multiplier(model, dof, [&](int closure, int constraint, int equation) {
+    const bool is_gap = model.closures[closure].constraints[constraint].kind == ClosureConstraint::Kind::Gap;
+    multipliers_.push_back({equation, is_gap ? 1.0 : length_});
+  });
 }
 
 double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const {

@@ -63,6 +63,18 @@ void set_follower_rates(const Model& model, const std::vector<Released>& release
   }
 }
 
+int multiplier_count(const Model& model) {
+  int count = 0;
+  for_each_constraint(model, Constraints::WithMultipliers, [&](const auto&, const auto&) { ++count; });
+  return count;
+}
+
+std::vector<int> multiplier_equations(const Model& model, const DegreesOfFreedom& dof) {
+  std::vector<int> equations;
+  for_each_multiplier(model, dof, [&](int, int, int equation) { equations.push_back(equation); });
+  return equations;
+}
+
 Kinematics::Kinematics(const Model& model, const DegreesOfFreedom& dof, Configuration configuration)
     : model_(model),
       dof_(dof),

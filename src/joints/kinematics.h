@@ -56,6 +56,19 @@ void for_each_constraint(const Model& model, Constraints which, const Visit& vis
     for (const ClosureConstraint& constraint : closure.implied) visit(closure, constraint);
   }
 }
+/// Calls visit(closure, constraint, equation) for each multiplier, in the order of their equations. These are the last
+/// ones of all unknowns, and as many as the constraints with multipliers. `closure`: its index. `constraint`: its index
+/// in the closure.
+template <class Visit>
+void for_each_multiplier(const Model& model, const DegreesOfFreedom& dof, const Visit& visit) {
+  for (int k = 0; k < static_cast<int>(model.closures.size()); ++k) {
+    const int first = dof.first[dof.variable_of_closure(k)];
+    for (int i = 0; i < static_cast<int>(model.closures[k].constraints.size()); ++i)
+      visit(k, i, dof.equation[first + i]);
+  }
+}
+int multiplier_count(const Model& model);
+std::vector<int> multiplier_equations(const Model& model, const DegreesOfFreedom& dof);
 
 // ---------------------------------------------------------------- all joints
 

@@ -31,7 +31,7 @@ class ClosingImpulses {
     system_.set_zero();
     add_mass(kinematics, state, system_);
     ClosureMaps maps;
-    for_each([&](int k, int i, int) {
+    for_each_multiplier(model_, dof_, [&](int k, int i, int) {
       const LoopClosure& closure = model_.closures[k];
       const ClosurePoses poses = closure_poses(closure, kinematics.nodes());
       closure_maps(closure, closure.constraints[i], poses, poses, 1, maps);
@@ -48,7 +48,7 @@ class ClosingImpulses {
   bool close(const std::vector<Vector6>& velocities, VelocityChange& change) {
     if (!is_solvable_) return false;
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(dof_.unknowns);
-    for_each([&](int k, int i, int equation) {
+    for_each_multiplier(model_, dof_, [&](int k, int i, int equation) {
       const LoopClosure& closure = model_.closures[k];
       const ClosurePoses poses = closure_poses(closure, kinematics_.nodes());
       solution[equation] = -rate_of(closure, closure_rows(closure, closure.constraints[i], poses), velocities);
@@ -59,15 +59,6 @@ class ClosingImpulses {
   }
 
  private:
-  /// Calls visit(closure, index of the constraint in it, equation) for all multipliers.
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (int k = 0; k < static_cast<int>(model_.closures.size()); ++k) {
-      const int first = dof_.first[dof_.variable_of_closure(k)];
-      for (int i = 0; i < dof_.size[dof_.variable_of_closure(k)]; ++i) visit(k, i, dof_.equation[first + i]);
-    }
-  }
-
   void add(const Eigen::VectorXd& solution, VelocityChange& change) const {
     Eigen::VectorXd scalars = Eigen::VectorXd::Zero(dof_.scalar_count);
     for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)

@@ -78,6 +78,23 @@ TEST(Kinematics, OfAFourBarLinkage) {
   EXPECT_EQ(independent_rows(kept.transpose(), kIndependent).size(), 2u) << "coordinates that follow the third one";
 }
 
+// Whoever counts multipliers counts the rows of the Jacobian, and the last unknowns.
+TEST(Kinematics, MultipliersAreTheLastUnknownsInTheOrderOfTheirConstraints) {
+  const Numbered n(build_model(every_joint_scene(false)));
+  std::vector<const ClosureConstraint*> constraints;
+  for_each_constraint(n.model, Constraints::WithMultipliers,
+                      [&](const auto&, const ClosureConstraint& constraint) { constraints.push_back(&constraint); });
+  ASSERT_GT(n.model.closures.size(), 1u);
+  ASSERT_EQ(multiplier_count(n.model), static_cast<int>(constraints.size()));
+  std::size_t next = 0;
+  int equation = n.dof.unknowns - multiplier_count(n.model);
+  for_each_multiplier(n.model, n.dof, [&](int closure, int constraint, int own) {
+    EXPECT_EQ(&n.model.closures[closure].constraints[constraint], constraints[next++]);
+    EXPECT_EQ(own, equation++);
+  });
+  EXPECT_EQ(equation, n.dof.unknowns);
+}
+
 // If all links are in line, the crank may go on with the rocker, or against it.
 TEST(Kinematics, OfAParallelogramAtItsDeadPoint) {
   const Numbered n(four_bar({1, -1, 1}, 0.7, 0.5));
@@ -140,9 +157,8 @@ void expect_derivatives(const Numbered& n) {
   const Kinematics start = n.start();
   const Eigen::MatrixXd jacobian = closure_jacobian(start, Constraints::All);
   const VectorXd scales = scalar_scales(n.model, n.dof);
-  int multipliers = 0;  // they are the last scalars
-  for_each_constraint(n.model, Constraints::WithMultipliers, [&](const auto&, const auto&) { ++multipliers; });
-  for (int scalar = 0; scalar < n.dof.scalar_count - multipliers; ++scalar) {
+  const int others = n.dof.scalar_count - multiplier_count(n.model);  // multipliers are the last scalars
+  for (int scalar = 0; scalar < others; ++scalar) {
     if (n.dof.equation[scalar] < 0) continue;
     const VectorXd unit = VectorXd::Unit(n.dof.scalar_count, scalar);
     VectorXd motion = unit;
