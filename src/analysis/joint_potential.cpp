@@ -40,8 +40,7 @@ JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
     if (is_unknown(dof, coordinate))
-      coordinates_.push_back(
-          {dof.equation[dof.scalar_of(coordinate)], c, is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
+      coordinates_.push_back({dof.equation[dof.scalar_of(coordinate)], c, 1 / coordinate_scale(model, coordinate)});
   }
   multipliers_ = multiplier_equations(model, dof);
   axes_ = coordinates_;

@@ -10,7 +10,7 @@
 
 #include "building/elementary_joints.h"
 #include "building/model_builder.h"
-#include "joints/joint_kinematics.h"
+#include "joints/kinematics.h"
 
 namespace flexarm {
 namespace {
@@ -278,8 +278,8 @@ void set_stop_depths(Model& model) {
     }
     const double range = stop.upper - stop.lower,
                  start = model.initial_released[coordinate.joint].displacement[coordinate.component];
-    const double scale = is_rotation(model, coordinate) ? 1.0 : model.length_scale;
-    stop.give_below = stop.give_above = range > 0 ? kDepth * range : kDepthWithoutRange * scale;
+    stop.give_below = stop.give_above =
+        range > 0 ? kDepth * range : kDepthWithoutRange * coordinate_scale(model, coordinate);
     deepen(stop.give_below, stop.lower - start);
     deepen(stop.give_above, start - stop.upper);
   }

@@ -33,10 +33,7 @@ class LoopInertias {
   }
 
  private:
-  /// The unit of an unknown, so that all of them have the same size.
-  double scale(int coordinate) const {
-    return is_rotation(model_, model_.coordinates[coordinate]) ? 1.0 : model_.length_scale;
-  }
+  double scale(int coordinate) const { return coordinate_scale(model_, model_.coordinates[coordinate]); }
   double ratio(int follower) const {
     return follower_ratio(model_, model_.coordinates[follower], model_.initial_released);
   }

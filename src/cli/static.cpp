@@ -10,6 +10,7 @@
 #include "cli/round_off.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/csv_writer.h"
+#include "joints/kinematics.h"
 #include "pictures/page.h"
 #include "pictures/still_pictures.h"
 #include "simulation/inside.h"
@@ -36,7 +37,7 @@ void print_equilibrium(const Simulation& simulation) {
   const std::vector<std::string>& names = simulation.coordinate_names();
   if (!names.empty()) fmt::print("joint coordinates [m, rad]\n");
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const double size = is_rotation(model, model.coordinates[i]) ? 1 : length;
+    const double size = coordinate_scale(model, model.coordinates[i]);
     fmt::print("  {:<24} {:>14.7g}\n", names[i], without_round_off(simulation.position(i), size));
   }
   fmt::print("positions [m]\n");

@@ -5,6 +5,7 @@
 
 #include "flexarm/model/model_error.h"
 #include "joints/joint_forces.h"
+#include "joints/kinematics.h"
 #include "math/cayley.h"
 
 namespace flexarm {
@@ -26,11 +27,6 @@ constexpr double kMostForeseen = 1.1, kShortOfStop = 0.98;
 Contact contact_of(const JointMap& joint) {
   if (joint.kind == JointMapKind::Slide || joint.rotation.isZero(0)) return Contact::Travel;
   return joint.translation.isZero(0) ? Contact::Turn : Contact::Both;
-}
-
-/// Scale of a coordinate's increments: 1 rad, or the model's length scale.
-double scale_of(const Model& model, const Coordinate& coordinate) {
-  return is_rotation(model, coordinate) ? 1.0 : model.length_scale;
 }
 
 }  // namespace
@@ -98,7 +94,7 @@ double DryFrictionStep::rate_at_begin(const FrictionCarrier& carrier) const {
   const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
   if (configuration_.state().rests[carrier.coordinate] > 0) return 0;
   const double rate = configuration_.begin_rates(coordinate.joint)[coordinate.component];
-  return std::abs(rate * configuration_.step()) <= kAtRest * scale_of(model_, coordinate) ? 0 : rate;
+  return std::abs(rate * configuration_.step()) <= kAtRest * coordinate_scale(model_, coordinate) ? 0 : rate;
 }
 
 void DryFrictionStep::begin_evaluation() {
@@ -235,7 +231,7 @@ void DryFrictionStep::place_held() {
     const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
     return coordinate.motion < 0 && carrier.law.is_held() &&
            std::abs(configuration_.increment_of(coordinate) - carrier.law.held_increment()) <=
-               kAtRest * scale_of(model_, coordinate);
+               kAtRest * coordinate_scale(model_, coordinate);
   };
   int resting_angles = 0;  // of the present spherical joint, whose three components follow each other in the list
   for (const FrictionCarrier& carrier : carriers_) {

@@ -200,7 +200,7 @@ Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(dof.scalar_count);
   for (int i = 0; i < dof.node_count; ++i) scales.segment<3>(dof.first[i]).setConstant(model.length_scale);
   for (const Coordinate& coordinate : model.coordinates)
-    if (!is_rotation(model, coordinate)) scales[dof.scalar_of(coordinate)] = model.length_scale;
+    scales[dof.scalar_of(coordinate)] = coordinate_scale(model, coordinate);
   return scales;
 }
 

@@ -45,6 +45,10 @@ inline ClosurePoses closure_poses(const LoopClosure& closure, const std::vector<
 inline double constraint_scale(const Model& model, const ClosureConstraint& constraint) {
   return constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
 }
+/// Returns the unit of a coordinate, so that all of them have the same size.
+inline double coordinate_scale(const Model& model, const Coordinate& coordinate) {
+  return is_rotation(model, coordinate) ? 1.0 : model.length_scale;
+}
 /// Only the constraints with multipliers, or those that they imply as well, closure by closure.
 enum class Constraints { WithMultipliers, All };
 /// Calls visit(closure, constraint) for each of them. Those with multipliers are in the order of these.
