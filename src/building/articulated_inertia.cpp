@@ -33,7 +33,6 @@ class Articulation {
         inertias_(model.coordinates.size(), 0.0) {
     for (const Coordinate& coordinate : model.coordinates)
       if (coordinate.mimicked >= 0) leads_[coordinate.mimicked] = true;
-    for (std::size_t i = 0; i < model.nodes.size(); ++i) articulated_.push_back(tree_.own(static_cast<int>(i)));
   }
 
   bool has_loops() const {
@@ -44,11 +43,9 @@ class Articulation {
   }
 
   void factorise() {
-    for (int i = static_cast<int>(articulated_.size()) - 1; i >= 0; --i) {  // parents come before their children
-      if (const int joint = tree_.joint_of(i); joint >= 0) yield(joint, i);
-      if (const int parent = parents_[i]; parent >= 0)
-        articulated_[parent] += moved(articulated_[i], model_.nodes[i].position - model_.nodes[parent].position);
-    }
+    tree_.for_each_inertia([&](int node, SpatialInertia& inertia) {
+      if (const int joint = tree_.joint_of(node); joint >= 0) yield(joint, node, inertia);
+    });
   }
   const std::vector<int>& dependent_coordinates() const { return dependent_; }
   const std::vector<double>& inertias() const { return inertias_; }
@@ -60,7 +57,7 @@ class Articulation {
     for (int i = 0; i < static_cast<int>(model_.nodes.size()); ++i) {
       const int j = tree_.joint_of(i);
       if (j < 0) continue;
-      const ReleasedColumns columns = tree_.columns_of(j);
+      const ReleasedColumns& columns = tree_.columns_of(j);
       for (const int k : free_components(j, columns, i)) {
         motions.push_back({static_cast<int>(coordinates.size()), i, columns.col(k)});
         coordinates.push_back(model_.first_coordinate[j] + k);
@@ -81,15 +78,16 @@ class Articulation {
   }
 
  private:
-  void yield(int j, int node) {
-    const ReleasedColumns all = tree_.columns_of(j);
+  /// Takes from the inertia at a node what it does not resist where its joint can move.
+  void yield(int j, int node, SpatialInertia& inertia) {
+    const ReleasedColumns& all = tree_.columns_of(j);
     std::vector<int> free = free_components(j, all, node);
     while (!free.empty()) {
       ReleasedColumns columns(6, free.size());
       for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = all.col(free[k]);
-      const int dependent = dependent_of(columns, rotors(j, free), node);
+      const int dependent = dependent_of(columns, rotors(j, free), node, inertia);
       if (dependent < 0) {
-        for (const int component : free) yield_along(all.col(component), j, component, node);
+        for (const int component : free) yield_along(all.col(component), j, component, inertia);
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
@@ -97,12 +95,11 @@ class Articulation {
     }
   }
 
-  /// Reduces the inertia at a node by the part that this coordinate's own motion takes up, with the inertia of its
-  /// rotor.
-  void yield_along(const Vector6& column, int j, int component, int node) {
-    const Vector6 force = articulated_[node] * column;
+  /// Reduces an inertia by the part that this coordinate's own motion takes up, with the inertia of its rotor.
+  void yield_along(const Vector6& column, int j, int component, SpatialInertia& inertia) {
+    const Vector6 force = inertia * column;
     const double resisting = column.dot(force) + rotor(j, component);
-    articulated_[node] -= force * force.transpose() / resisting;
+    inertia -= force * force.transpose() / resisting;
     inertias_[model_.first_coordinate[j] + component] = resisting;
   }
 
@@ -134,7 +131,9 @@ class Articulation {
 
   /// Where joints further outboard can move, some motion of this joint may have no inertia. Returns the column that
   /// moves most in it, or -1 if there is no such motion.
-  int dependent_of(const ReleasedColumns& columns, const ReleasedSquare& rotors, int node) const {
+  /// `yielding_inertia`: of all outboard, if its joints can move.
+  int dependent_of(const ReleasedColumns& columns, const ReleasedSquare& rotors, int node,
+                   const SpatialInertia& yielding_inertia) const {
     const ReleasedSquare locked = ReleasedSquare(columns.transpose() * tree_.outboard(node) * columns) + rotors;
     const ReleasedVector scale = locked.diagonal().cwiseSqrt().cwiseInverse();
     const auto [inertias, directions] = symmetric_eigenpairs(scale.asDiagonal() * locked * scale.asDiagonal());
@@ -142,7 +141,7 @@ class Articulation {
     // Motions that have equal inertia with other joints locked.
     const ReleasedSquare motions =
         scale.asDiagonal() * directions.rightCols(count) * inertias.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-    const ReleasedSquare yielding = ReleasedSquare(columns.transpose() * articulated_[node] * columns) + rotors;
+    const ReleasedSquare yielding = ReleasedSquare(columns.transpose() * yielding_inertia * columns) + rotors;
     const SymmetricEigenpairs pairs = symmetric_eigenpairs(motions.transpose() * yielding * motions);
     if (pairs.values[0] > kRoundOff) return -1;
     Eigen::Index most = 0;
@@ -153,8 +152,7 @@ class Articulation {
   const std::vector<int>& parents_;
   const Model& model_;
   TreeInertia tree_;
-  std::vector<bool> leads_;                  // per coordinate: whether others follow it
-  std::vector<SpatialInertia> articulated_;  // per node: all outboard, joints movable
+  std::vector<bool> leads_;  // per coordinate: whether others follow it
   std::vector<int> dependent_;
   std::vector<double> inertias_;  // per coordinate
 };

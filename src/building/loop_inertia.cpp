@@ -16,11 +16,7 @@ constexpr double kTakesPart = 1e-6;
 class LoopInertias {
  public:
   LoopInertias(const std::vector<int>& parents, const Model& model)
-      : parents_(parents),
-        model_(model),
-        tree_(parents, model),
-        followers_(model.coordinates.size()),
-        out_(model.coordinates.size()) {
+      : model_(model), tree_(parents, model), followers_(model.coordinates.size()), out_(model.coordinates.size()) {
     for (std::size_t i = 0; i < model.coordinates.size(); ++i)
       if (model.coordinates[i].mimicked >= 0) followers_[model.coordinates[i].mimicked].push_back(static_cast<int>(i));
   }
@@ -57,20 +53,14 @@ class LoopInertias {
   /// Adds the derivatives of a constraint by the coordinates on the way from a node to the root. `by_node`: by the
   /// node's motion.
   void add_way(int end, const Vector6& by_node, int row, std::vector<Eigen::Triplet<double>>& entries) const {
-    for (int node = end; node >= 0; node = parents_[node]) {
-      const int joint = tree_.joint_of(node);
-      if (joint < 0) continue;
-      const ReleasedColumns columns = tree_.columns_of(joint);
-      for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        int coordinate = model_.first_coordinate[joint] + static_cast<int>(k);
-        double value = by_node.dot(tree_.seen_at(columns.col(k), node, end));
-        if (model_.coordinates[coordinate].mimicked >= 0) {
-          value *= ratio(coordinate);
-          coordinate = model_.coordinates[coordinate].mimicked;
-        }
-        if (model_.coordinates[coordinate].motion < 0) entries.emplace_back(row, coordinate, value * scale(coordinate));
+    tree_.for_each_way_to_move(end, [&](int coordinate, const Vector6& motion) {
+      double value = by_node.dot(motion);
+      if (model_.coordinates[coordinate].mimicked >= 0) {
+        value *= ratio(coordinate);
+        coordinate = model_.coordinates[coordinate].mimicked;
       }
-    }
+      if (model_.coordinates[coordinate].motion < 0) entries.emplace_back(row, coordinate, value * scale(coordinate));
+    });
   }
 
   /// The motions of the unknowns of a group, and of the coordinates that follow them.
@@ -124,7 +114,6 @@ class LoopInertias {
     }
   }
 
-  const std::vector<int>& parents_;
   const Model& model_;
   TreeInertia tree_;
   std::vector<std::vector<int>> followers_;  // per coordinate

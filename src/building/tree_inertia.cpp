@@ -1,5 +1,7 @@
 #include "building/tree_inertia.h"
 
+#include <cassert>
+
 #include "math/so3.h"
 
 namespace flexarm {
@@ -11,28 +13,26 @@ SpatialInertia moved(const SpatialInertia& inertia, const Vector3& way) {
 }
 
 TreeInertia::TreeInertia(const std::vector<int>& parents, const Model& model)
-    : parents_(parents), model_(model), joint_of_(model.nodes.size(), -1) {
+    : parents_(parents),
+      model_(model),
+      joint_of_(model.nodes.size(), -1),
+      columns_(model.joints.size()),
+      outboard_(model.nodes.size()) {
+  assert(parents.size() == model.nodes.size());
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointMap& joint = model.joints[j];
     // A joint that closes a loop at the end of a beam does not carry that beam.
-    if (joint.kind != JointMapKind::Slide && parents[joint.slave] == joint.master)
-      joint_of_[joint.slave] = static_cast<int>(j);
+    if (joint.kind == JointMapKind::Slide || parents[joint.slave] != joint.master) continue;
+    joint_of_[joint.slave] = static_cast<int>(j);
+    FoldMaps maps;
+    variational_maps(joint, joint_pose(joint, model.nodes, model.initial_released[j]), Vector6::Zero(), maps);
+    columns_[j] = maps.right;
   }
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) outboard_.push_back(own(static_cast<int>(i)));
-  for (std::size_t i = outboard_.size(); i-- > 0;)  // parents come before their children
-    if (const int parent = parents[i]; parent >= 0)
-      outboard_[parent] += moved(outboard_[i], model.nodes[i].position - model.nodes[parent].position);
-}
-
-ReleasedColumns TreeInertia::columns_of(int j) const {
-  const JointMap& joint = model_.joints[j];
-  FoldMaps maps;
-  variational_maps(joint, joint_pose(joint, model_.nodes, model_.initial_released[j]), Vector6::Zero(), maps);
-  return maps.right;
+  for_each_inertia([&](int node, const SpatialInertia& inertia) { outboard_[node] = inertia; });
 }
 
 Vector6 TreeInertia::seen_at(Vector6 motion, int from, int to) const {
-  motion.head<3>() += Vector3(motion.tail<3>()).cross(model_.nodes[to].position - model_.nodes[from].position);
+  motion.head<3>() += Vector3(motion.tail<3>()).cross(way(from, to));
   return motion;
 }
 
