@@ -22,7 +22,8 @@ constexpr std::size_t kMostAsked = 100;
 constexpr double kTakesPart = 0.1;
 
 /// Factorises the joints' mass matrix from the leaves to the root (Featherstone). Parts outboard of a joint resist
-/// motions inboard with the inertia that is left when the joint itself can move.
+/// motions inboard with the inertia that is left when the joint itself can move. Coordinates are released one by one,
+/// since each pivot is judged; ArticulatedBodies (joints), which steps use, releases whole joints that have inertia.
 class Articulation {
  public:
   Articulation(const std::vector<int>& parents, const Model& model)

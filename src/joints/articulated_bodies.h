@@ -1,6 +1,8 @@
 #pragma once
 /// Forward dynamics of a tree of rigid bodies at an instant, by articulated bodies: O(n), without a mass matrix.
-/// (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7; docs/notes/explicit.md)
+/// (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7; docs/notes/explicit.md) It releases whole joints and
+/// takes for granted that they have inertia; building/articulated_inertia.cpp asks whether they do, coordinate by
+/// coordinate, at the start and with beams, slides and driven joints held.
 
 #include <vector>
 
