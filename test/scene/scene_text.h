@@ -36,6 +36,13 @@ inline ReadResult read(const std::string& text) {
   return read_scene_text(text, "scene.urdf");
 }
 
+/// The good scene as data. There must be no findings.
+inline SceneDescription good_scene() {
+  const ReadResult result = read(kGoodScene);
+  EXPECT_TRUE(result.diagnostics.empty()) << to_text(result.diagnostics);
+  return result.scene.value();
+}
+
 /// Returns all findings about a scene that is refused, with " | " between them.
 inline std::string findings_of(const std::string& text) {
   const ReadResult result = read(text);
