@@ -264,6 +264,7 @@ class SceneParts {
     all("first", contact.first, "second", contact.second, "stiffness", contact.stiffness, "restitution",
         contact.restitution, "friction", contact.friction, "spinning", contact.spinning, "rolling", contact.rolling);
     add_given("contact_time", contact.contact_time);
+    if (contact.grip != scene::ContactDescription().grip) all("grip", contact.grip);
   }
   void add(const scene::SurfaceHints& hints) { all("friction", hints.friction, "stiffness", hints.stiffness); }
   void add(const scene::ClearanceDescription& clearance) {
