@@ -1,119 +1,31 @@
 """Test the command `flexarm film`, on pages that are made here and on a small scene, and the commands of docs/film.md.
 
-The frames are looked at through ffmpeg. See docs/notes/page.md for what a page has in it.
+The frames are looked at through ffmpeg.
 """
 
-import base64
 import functools
 import json
 import os
 import re
 import shutil
-import signal
 import subprocess
-import tempfile
-import time
-import zlib
 
 import numpy
 import pytest
 
 from conftest import ROOT, example
+from filming import HEIGHT, WIDTH, ball, film, needs_browser, place, write_page, write_page_of_ball
 from flexarm.film import program
 from flexarm.film.arguments import read_arguments
 from flexarm.film.browser import Browser
 from flexarm.film.errors import InputError
 
-PLAYER = os.path.join(ROOT, "src", "pictures", "player")
-THREE = "/usr/share/javascript/three"
-WIDTH, HEIGHT = 320, 200
-
-PACKAGES = (shutil.which("chromium") and shutil.which("chromedriver") and shutil.which("ffmpeg")
-            and os.path.exists("/usr/lib/python3/dist-packages/selenium") and os.path.exists(THREE))
-
-
-def draws_by_software():
-    """Return whether Chromium has WebGL without a graphics processor."""
-    page = ("data:text/html,<script>document.write(Boolean(document.createElement('canvas').getContext('webgl')))"
-            "</script>")
-    with tempfile.TemporaryDirectory() as folder:
-        shown = subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
-                                "--enable-unsafe-swiftshader", "--user-data-dir=" + folder, "--dump-dom", page],
-                               check=False, timeout=1000, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    return b"<body>true" in shown.stdout
-
-
-needs_browser = pytest.mark.skipif(
-    not (PACKAGES and draws_by_software()),
-    reason="needs Debian's packages chromium, with WebGL by software, chromium-driver, python3-selenium, ffmpeg and "
-           "libjs-three")
-
-
-# ---------------------------------------------------------------- pages
-
-def track(values):
-    """Return a number over time as a page has it: smallest and largest value, and bytes of differences."""
-    values = numpy.asarray(values, dtype=float)
-    low, high = values.min(), values.max()
-    head = numpy.array([low, high]).astype("<f8").tobytes()
-    if low == high:
-        return head
-    steps = numpy.diff(numpy.rint((values - low) / (high - low) * 65534).astype(int), prepend=0) % 65536
-    return head + (steps % 256).astype(numpy.uint8).tobytes() + (steps // 256).astype(numpy.uint8).tobytes()
-
-
-def ball(path, times, **changes):
-    """Return the elements of a run of a small ball that moves along a path."""
-    picture = dict({
-        "name": "ball", "title": "ball", "notes": [], "extent": {"center": [0, 0, 0], "radius": 1},
-        "gravity": [0, 0, -9.81], "meshes": [], "beams": [], "joints": [], "probes": [], "grounds": [], "arrows": [],
-        "columns": [], "frames": len(times), "clips": [], "still": None, "links": [
-            {"name": "ball", "parent": -1, "beam": -1, "stick": [], "shapes": [
-                {"kind": "sphere", "pose": [0, 0, 0, 0, 0, 0, 1], "color": [1, 0, 1, 1], "radius": 0.06}]}]}, **changes)
-    pose = [*numpy.transpose(path), *(numpy.full(len(times), x) for x in (0, 0, 0, 1))]
-    motion = numpy.asarray(times).astype("<f8").tobytes() + b"".join(map(track, pose))
-    return ('<script type="application/json" class="flexarm-picture">%s</script>\n'
-            '<script type="text/plain" class="flexarm-motion">%s</script>'
-            % (json.dumps(picture).replace("<", "\\u003c"), base64.b64encode(zlib.compress(motion)).decode()))
-
-
-def write_page(path, runs):
-    """Write the player's page with these elements in the place of the runs."""
-    def text_of(match):
-        for folder in (PLAYER, THREE, THREE + "/examples/js/controls"):
-            if os.path.exists(os.path.join(folder, match[1])):
-                with open(os.path.join(folder, match[1]), encoding="utf-8") as file:
-                    return file.read()
-        raise FileNotFoundError(match[1])
-
-    with open(os.path.join(PLAYER, "player.html"), encoding="utf-8") as file:
-        page = file.read()
-    page = re.sub(r'<link rel="stylesheet" href="(.+?)">', lambda found: "<style>%s</style>" % text_of(found), page)
-    page = re.sub(r'<script src="(.+?)"></script>', lambda found: "<script>%s</script>" % text_of(found), page)
-    path.write_text(page.replace("<!-- runs -->", runs), encoding="utf-8")
-
-
-def place(t):
-    """Return where the ball is."""
-    return numpy.stack([0.8 * numpy.cos(t), 0.6 * numpy.sin(t), 0.3 * t - 0.3], axis=-1)
-
 
 @pytest.fixture
 def folder(tmp_path):
     """Return a folder with the page of a ball, 2 s long from 1 s on."""
-    times = numpy.linspace(1, 3, 201)
-    write_page(tmp_path / "ball.html", ball(place(times), times))
+    write_page_of_ball(tmp_path / "ball.html")
     return tmp_path
-
-
-def film(folder, *arguments, status=0, **environment):
-    """Run `flexarm film ...` in the folder. Return its output, or its error output if it fails."""
-    result = subprocess.run([os.environ["FLEXARM_PROGRAM"], "film", *map(str, arguments)], cwd=folder, check=False,
-                            timeout=1000, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
-                            env={**os.environ, **environment})
-    assert result.returncode == status, result.stderr.decode()
-    assert (result.stderr == b"") == (status == 0), result.stderr.decode()
-    return (result.stderr if status else result.stdout).decode()
 
 
 def probe(path):
@@ -307,104 +219,6 @@ def test_a_run_that_fails_is_filmed_until_then(failing_scene):
     said = film(failing_scene.parent, "failing.urdf", "-o", "a.mp4", "--until", 2, "--rate", 5, *SAME_CAMERA, status=1)
     assert "failed" in said and "Traceback" not in said
     assert probe(failing_scene.parent / "a.mp4")[4] == 5  # it fails at about 0.9 s
-
-
-# ---------------------------------------------------------------- errors
-
-@pytest.fixture
-def short_folder():
-    """Return a folder for temporary files; the path of tmp_path is too long for Chromium, which gets another one."""
-    with tempfile.TemporaryDirectory(dir="/tmp") as name:
-        yield name
-
-
-def left_behind(folder):
-    """Return the processes of the browser whose temporary files are in a folder."""
-    processes = subprocess.run(["ps", "ax", "-o", "args"], check=True, stdout=subprocess.PIPE).stdout.decode()
-    return [line for line in processes.splitlines() if folder + "/flexarm_film_" in line]
-
-
-@needs_browser
-@pytest.mark.parametrize("number, name", [(signal.SIGINT, "a.mp4"), (signal.SIGTERM, "a.gif")])
-def test_an_interruption_leaves_nothing(folder, short_folder, number, name):
-    process = subprocess.Popen([os.environ["FLEXARM_PROGRAM"], "film", "ball.html", "-o", name, "--speed", "0.001"],
-                               cwd=folder, stderr=subprocess.PIPE, start_new_session=True,
-                               env={**os.environ, "TMPDIR": short_folder})
-    end = time.monotonic() + 60
-    while not any(entry.endswith(".part") for entry in os.listdir(folder)) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert left_behind(short_folder)
-    os.killpg(process.pid, number)  # as a terminal does
-    assert process.communicate(timeout=1000)[1] == b"flexarm: film: interrupted\n"
-    assert process.returncode == 128 + number
-    assert os.listdir(folder) == ["ball.html"] and os.listdir(short_folder) == []
-    end = time.monotonic() + 10
-    while left_behind(short_folder) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not left_behind(short_folder)
-
-
-@pytest.mark.parametrize("arguments, said", [
-    ([], "the following arguments are required: PAGE|SCENE"),
-    (["a.html", "-o", "a.avi"], "--output: expected a name that ends in .mp4, .gif or .png, got 'a.avi'"),
-    (["a.html", "-o", "%s.png"], "--output: expected one number such as %04d in the name of a series, got '%s.png'"),
-    (["a.html", "-o", "%d%d.png"], "expected one number such as %04d in the name of a series, got '%d%d.png'"),
-    (["a.html", "--size", "1280"], "--size: expected WIDTHxHEIGHT, whole numbers from 16 to 4096, got '1280'"),
-    (["a.html", "--size", "5000x100"], "--size: expected WIDTHxHEIGHT, whole numbers from 16 to 4096, got '5000x100'"),
-    (["a.html", "--size", "641x480"], "--size: expected even numbers for MP4, got 641x480"),
-    (["a.html", "--rate", "0"], "--rate: expected a number > 0, got '0'"),
-    (["a.html", "-o", "a.gif", "--rate", "60"], "--rate: expected at most 50 for GIF, got 60"),
-    (["a.html", "--at", "1"], "--at: expected --output NAME.png, got 'a.mp4'"),
-    (["a.html", "-o", "a.png", "--from", "1"], "--from: one picture has one time, --at; "),
-    (["a.html", "--from", "2", "--until", "1"], "expected --from before --until, got 2 and 1"),
-    (["a.html", "--camera", "1,2"], "--camera: expected three numbers, X,Y,Z, got '1,2'"),
-    (["a.html", "--camera", "1,2,nan"], "--camera: expected a number, got 'nan'"),
-    (["a.html", "--view", "up"], "--view: expected x, y, z, or three numbers, X,Y,Z, got 'up'"),
-    (["a.html", "--view", "x", "--target", "0,0,0"], "--view: expected no --camera or --target beside it"),
-    (["a.html", "--show", "loads"], "--show: expected names from grid, world, "),
-])
-def test_wrong_usage(tmp_path, arguments, said):
-    assert said in film(tmp_path, *arguments, status=2)
-
-
-@needs_browser
-def test_files_that_cannot_be_used(folder):
-    (folder / "text.html").write_text("<!DOCTYPE html><p>Nothing</p>")
-    (folder / "live.html").write_text('<script type="application/json" class="flexarm-live">{}</script>')
-    (folder / "fake.html").write_text('<script class="flexarm-picture">{}</script>')
-    (folder / "bad.urdf").write_text("<robot")
-    write_page(folder / "damaged.html", ball([[0, 0, 0]], [0.0]).replace("flexarm-motion\">", "flexarm-motion\">x"))
-    page = (folder / "ball.html").read_text()
-    for part in (0.3, 0.99):
-        (folder / ("cut_%g.html" % part)).write_text(page[:int(part * len(page))])
-    for words, said in ((["none.html"], "cannot read 'none.html': No such file or directory"),
-                        (["text.html"], "text.html: the page has no run; expected a page that `flexarm show` wrote"),
-                        (["live.html"], "live.html: a live page has no run that could be filmed"),
-                        (["fake.html"], "fake.html: the page is none of flexarm show"),
-                        (["cut_0.3.html"], "cut_0.3.html: the page is incomplete: it has lost its end"),
-                        (["cut_0.99.html"], "cut_0.99.html: the page is incomplete: it has lost its end"),
-                        (["damaged.html"], "damaged.html: "), (["bad.urdf"], "bad.urdf"),
-                        (["ball.html", "-o", "no/a.mp4"], "cannot write 'no/a.mp4': there is no folder 'no'"),
-                        (["ball.html", "--", "--set", "a=1"], "options behind -- are for scenes, which are simulated")):
-        assert said in film(folder, *words, status=2)
-    assert not [name for name in os.listdir(folder) if not name.endswith((".html", ".urdf"))]
-
-
-@needs_browser
-@pytest.mark.parametrize("missing, package", [("chromium", "chromium"), ("chromedriver", "chromium-driver"),
-                                              ("ffmpeg", "ffmpeg"), ("selenium", "python3-selenium")])
-def test_without_a_package_it_is_told_which_one(folder, missing, package):
-    programs = folder / "bin"
-    programs.mkdir()
-    for name in {"chromium", "chromedriver", "ffmpeg"} - {missing}:
-        (programs / name).symlink_to(shutil.which(name))
-    # The driver is also looked for in folders outside PATH, and may be there.
-    hidden = {"selenium": "import sys\nsys.modules['selenium'] = None\n",
-              "chromedriver": "import shutil\nfind = shutil.which\n"
-                              "shutil.which = lambda name: None if name.endswith('chromedriver') else find(name)\n"}
-    (folder / "sitecustomize.py").write_text(hidden.get(missing, ""))
-    said = film(folder, "ball.html", status=2, PATH=str(programs), PYTHONPATH=str(folder))
-    assert said == "flexarm: film: films need Debian's package %s, which is missing\n" % package
 
 
 # ---------------------------------------------------------------- the page of the documentation
