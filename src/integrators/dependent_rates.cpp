@@ -12,8 +12,6 @@ namespace {
 /// violated by less than kNearlyClosed: its error is quadratic. Relative to lengths of the model.
 constexpr double kClosed = 1e-14, kNearlyClosed = 1e-8;
 constexpr int kMostIterations = 12;
-/// A loop is at a dead point if a pivot is smaller than this part of the largest one.
-constexpr double kDead = 1e-8;
 /// Relative: differences of a motion's rates that are not jumps but errors of its polynomials.
 constexpr double kSmoothRate = 1e-7;
 
@@ -92,7 +90,9 @@ DependentRates::DependentRates(const Model& model, const ArticulatedBodies& bodi
   columns_.setZero(rates_, moved + free), mass_.setZero(rates_, rates_), moved_.setZero(rates_, moved + free);
   small_.setZero(free, free);
   loops_ = Eigen::PartialPivLU<Eigen::MatrixXd>(rows_);
+  scaled_.setZero(rows_, roots - moved);
   choice_ = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(rows_, roots - moved);
+  choice_.setThreshold(kIndependent);
   factor_ = Eigen::LLT<Eigen::MatrixXd>(free);
 }
 
@@ -110,9 +110,13 @@ bool DependentRates::begin(double time, double step, std::vector<Released>& rele
   bodies.set(released, rates);
   find_constraints(bodies);
   const int moved = static_cast<int>(motions_.size());
-  choice_.compute(jacobian_.rightCols(jacobian_.cols() - moved));
-  const auto pivots = choice_.matrixQR().diagonal().cwiseAbs();
-  if (!(pivots.minCoeff() > kDead * pivots.maxCoeff())) return false;
+  for (Eigen::Index k = 0; k < scaled_.cols(); ++k) {
+    const Place& place = places_[roots_[moved + k]];
+    const Coordinate& coordinate = model_.coordinates[model_.first_coordinate[place.joint] + place.component];
+    scaled_.col(k) = coordinate_scale(model_, coordinate) * jacobian_.col(moved + k);
+  }
+  choice_.compute(scaled_);
+  if (choice_.rank() < rows_) return false;
   const auto& order = choice_.colsPermutation().indices();
   for (int i = 0; i < rows_; ++i) dependent_[i] = moved + order[i];
   for (std::size_t i = 0; i < independent_.size(); ++i)

@@ -88,7 +88,7 @@ class DependentRates {
   std::vector<Vector6> closure_forces_;
   double step_ = 0;
   Eigen::VectorXd values_, drives_, follower_bends_, bend_, needed_, forces_, change_, reduced_, right_, root_rates_;
-  Eigen::MatrixXd rows_of_rates_, jacobian_, block_, transfer_, columns_, mass_, moved_, small_;
+  Eigen::MatrixXd rows_of_rates_, jacobian_, scaled_, block_, transfer_, columns_, mass_, moved_, small_;
   Eigen::PartialPivLU<Eigen::MatrixXd> loops_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> choice_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
