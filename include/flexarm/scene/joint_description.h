@@ -23,13 +23,13 @@ enum class JointKind {
   Spherical,
   Universal,
   Cylindrical,
-  PinSlot,
   // Kinds with one coordinate, the angle about `axis`, and a travel that depends on this angle:
   Screw,
   RackAndPinion,
   Worm,
   Cam,
-  Slide  ///< along the parent's flexible centreline. Coordinates: arc length, then those of SlideDescription::rotation
+  Slide,  ///< along the parent's flexible centreline. Coordinates: arc length, then those of SlideDescription::rotation
+  PinSlot  // saved states know kinds by their numbers, so new ones come last
 };
 
 /// Whether it is a screw, rack and pinion, worm or cam.
