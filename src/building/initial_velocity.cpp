@@ -10,8 +10,24 @@
 namespace flexarm {
 namespace {
 
-/// Largest rate at which the initial velocities of joints may open a loop, relative to the largest velocity.
+/// Largest rate at which the initial velocities of joints may violate constraints with multipliers, relative to the
+/// largest velocity. Implied constraints follow from these by the rule of rank, and may open by as much as that.
 constexpr double kAgrees = 1e-9;
+
+/// The smallest change of scaled velocities by which constraints open no more, if there is one. `jacobian`: with the
+/// columns of what may change. `opening`: the rate of each constraint.
+Eigen::VectorXd closing_velocity(const ConstraintRows& jacobian, const Eigen::VectorXd& opening) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(jacobian.cols());
+  for (const ConstraintGroup& group : independent_groups(jacobian)) {
+    if (group.columns.empty()) continue;
+    const auto size = static_cast<Eigen::Index>(group.rows.size());
+    Eigen::VectorXd closing(size);
+    for (Eigen::Index i = 0; i < size; ++i) closing[i] = -opening[group.rows[i]];
+    const Eigen::VectorXd part = smallest_least_squares(group.block, closing, kIndependent);
+    for (Eigen::Index k = 0; k < part.size(); ++k) change[group.columns[k]] = part[k];
+  }
+  return change;
+}
 
 class InitialVelocity {
  public:
@@ -92,7 +108,8 @@ bool InitialVelocity::is_given(const Coordinate& coordinate) const {
 void InitialVelocity::satisfy_closures() {
   const DegreesOfFreedom dof(model_);
   const Eigen::VectorXd scales = scalar_scales(model_, dof);
-  const ConstraintRows jacobian = closure_jacobian({model_, dof, initial_configuration(model_)}, Constraints::All);
+  const Kinematics start(model_, dof, initial_configuration(model_));
+  const ConstraintRows jacobian = closure_jacobian(start, Constraints::WithMultipliers);
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(dof.scalar_count);
   for (int i = 0; i < dof.node_count; ++i) velocity.segment<6>(dof.first[i]) = velocity_[i];
   for (std::size_t j = 0; j < rates_.size(); ++j)
@@ -101,23 +118,16 @@ void InitialVelocity::satisfy_closures() {
   std::vector<bool> is_adjustable(static_cast<std::size_t>(dof.scalar_count), true);
   for (const Coordinate& coordinate : model_.coordinates)
     if (is_given(coordinate)) is_adjustable[dof.scalar_of(coordinate)] = false;
-  const ConstraintRows adjustable = with_columns(jacobian, is_adjustable);
   const Eigen::VectorXd opening = jacobian * velocity;
   const double speed = velocity.lpNorm<Eigen::Infinity>();
-  if (opening.lpNorm<Eigen::Infinity>() <= kAgrees * speed) return;
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(dof.scalar_count);
-  for (const ConstraintGroup& group : independent_groups(adjustable)) {
-    if (group.columns.empty()) continue;
-    const auto size = static_cast<Eigen::Index>(group.rows.size());
-    Eigen::VectorXd closing(size);
-    for (Eigen::Index i = 0; i < size; ++i) closing[i] = -opening[group.rows[i]];
-    const Eigen::VectorXd part = smallest_least_squares(group.block, closing);
-    for (Eigen::Index k = 0; k < part.size(); ++k) change[group.columns[k]] = part[k];
-  }
-  if ((adjustable * change + opening).lpNorm<Eigen::Infinity>() > kAgrees * speed)
+  const bool is_closed = opening.lpNorm<Eigen::Infinity>() <= kAgrees * speed;
+  if (!is_closed) velocity += closing_velocity(with_columns(jacobian, is_adjustable), opening);
+  if ((jacobian * velocity).lpNorm<Eigen::Infinity>() > kAgrees * speed ||
+      (closure_jacobian(start, Constraints::All) * velocity).lpNorm<Eigen::Infinity>() > kIndependent * speed)
     throw ModelError(at_loop_joint(plan_.scene, model_.closures.front().name) +
                      "the initial velocities of the joints contradict the loop that it closes: give fewer of them");
-  velocity = scales.cwiseProduct(velocity + change);
+  if (is_closed) return;
+  velocity.array() *= scales.array();
   for (int i = 0; i < dof.node_count; ++i)
     if (dof.slave_joint[i] < 0) velocity_[i] = velocity.segment<6>(dof.first[i]);
   for (std::size_t j = 0; j < rates_.size(); ++j)

@@ -281,6 +281,19 @@ TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   expect_error(b.scene, "<loop_joint> 'hip': the initial velocities of the joints contradict the loop that it closes");
 }
 
+// An axis with rounded numbers is not quite parallel to the others, so that constraints that count as implied open by
+// as little. The others must hold.
+TEST(RigidLoopBuilder, RatesAreThoseOfParallelAxesIfNumbersAreRounded) {
+  SceneBuilder b = rigid_crank_rocker();
+  b.scene.initial_joints.push_back({"ground", 0, 2, {}});
+  for (scene::JointDescription& joint : b.scene.joints)
+    if (joint.name == "foot") joint.axis = {3e-7, 1, 0};
+  const Model model = build_model(b.scene);
+  ASSERT_EQ(model.closures[0].constraints.size(), 2u);
+  EXPECT_NEAR(model.initial_velocity[model.closures[0].child][4], 0, 1e-6);
+  EXPECT_NEAR(model.initial_velocity[model.closures[0].parent][4], 0.8 / 0.6, 1e-6);
+}
+
 TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
   // A second linkage, either on the world, where the loops have nothing in common, or on the first coupler.
   for (const char* base : {"world", "coupler"}) {
