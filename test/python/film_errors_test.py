@@ -27,8 +27,8 @@ def short_folder():
 
 
 def left_behind(folder):
-    """Return the processes of the browser whose temporary files are in a folder."""
-    processes = subprocess.run(["ps", "ax", "-o", "args"], check=True, stdout=subprocess.PIPE).stdout.decode()
+    """Return the processes of the browser whose temporary files are in a folder. Without ww, ps may cut long lines."""
+    processes = subprocess.run(["ps", "axww", "-o", "args"], check=True, stdout=subprocess.PIPE).stdout.decode()
     return [line for line in processes.splitlines() if folder + "/flexarm_film_" in line]
 
 
