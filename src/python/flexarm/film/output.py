@@ -1,5 +1,6 @@
 """Where the frames of a film go: to ffmpeg, or each into a file of its own."""
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -82,6 +83,9 @@ def encode(path, kind, rate, frames, samples):
             ffmpeg.kill()
             ffmpeg.wait()
             raise
+        finally:
+            with contextlib.suppress(BrokenPipeError):  # of a rest that nobody reads any more
+                ffmpeg.stdin.close()
         if ffmpeg.wait():
             log.seek(0)
             raise FilmError("ffmpeg has failed: " + log.read().decode(errors="replace").strip())
