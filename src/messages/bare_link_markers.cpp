@@ -42,7 +42,8 @@ BareLinkMarkers::BareLinkMarkers(const Simulation& simulation, double scene_radi
     if (links[i].beam || !links[i].visuals.empty()) continue;
     BareLink bare{i, {}, {}};
     for (const scene::VisualDescription& shape : links[i].collisions)
-      if (!std::holds_alternative<scene::MeshShape>(shape.shape) && !scene::is_point(shape)) bare.shapes.push_back(shape);
+      if (!std::holds_alternative<scene::MeshShape>(shape.shape) && !scene::is_point(shape))
+        bare.shapes.push_back(shape);
     if (bare.shapes.empty()) {
       bare.ends = std::move(places[i]);
       if (const auto mass = pictures::mass_ball(links[i])) {
