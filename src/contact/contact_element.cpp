@@ -318,7 +318,6 @@ ForceMeasures ContactElement::measures(const State& state, const double*, const 
   Eigen::Index row = 0;
   for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
     const ContactLaw law = law_of(station);
-    const double penetration = station.radius - distance.value, root = grip_root(law, penetration, 0).value;
     const Vector3 normal = base.rotation * distance.gradient;
     const Vector3 place = base.rotation * this->place(station, poses_in(state));  // from the shapes' node
     const Vector3 across = normal.unitOrthogonal(), third = normal.cross(across);
@@ -338,14 +337,13 @@ ForceMeasures ContactElement::measures(const State& state, const double*, const 
       for (int i = 0; i < moving_nodes(); ++i)
         out.rows.block<1, 3>(row, 6 * i + 3) = station.weights[i] * axis.transpose();
       if (surface_.node >= 0) out.rows.block<1, 3>(row, columns - 3) = -axis.transpose();
-      out.stiffness(row, row) = root * root * law.turn_grip;
+      out.stiffness(row, row) = law.turn_grip;
       ++row;
     };
-    add(normal, Vector3::Zero(), contact_push(law, {0, penetration, 0}).slope);
+    add(normal, Vector3::Zero(), contact_push(law, {0, station.radius - distance.value, 0}).slope);
     // Friction acts at the surface, which is below the station's middle by the radius.
     const Vector3 below = -station.radius * normal;
-    const double grip = root * root * law.grip;
-    if (law.friction > 0) add(across, below, grip), add(third, below, grip);
+    if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
     if (law.spinning > 0) add_turn(normal);
     if (law.rolling > 0) add_turn(across), add_turn(third);
   });

@@ -18,9 +18,10 @@ constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
 /// the surface (ContactLaw::most_start) would be pushed out. Without this bound, a contact that begins at rest would
 /// cover all of its motion in every step, however short.
 constexpr double kSlow = 1e-3;
-/// Phase angle by which a step advances a sticking oscillator that the step damps best, and the angle of the contact's
-/// oscillator in a usual step, a tenth of the contact time.
-constexpr double kBestAngle = 4, kUsualAngle = kPi / 10;
+/// Phase angle by which a step advances a sticking oscillator that the step damps best.
+constexpr double kBestAngle = 4;
+/// What is deeper than belongs to its speed of approach by more than 1 / kPressed is pressed, and no hit.
+constexpr double kPressed = 0.5;
 /// An initial penetration decays to 1/e while the contact's oscillator advances by this phase angle.
 constexpr double kLetOutAngle = 100;
 
@@ -175,15 +176,19 @@ double let_out_rate(const ContactLaw& law, double start) {
   return start * law.frequency / kLetOutAngle;
 }
 
-GripRoot grip_root(const ContactLaw& law, double penetration, double duration) {
+GripRoot grip_root(const ContactLaw& law, double penetration, double speed, double duration) {
   if (penetration <= 0 || std::isinf(law.depth)) return {};
+  const Hardened x = hardened({penetration, law.depth});
+  const double part = speed / (law.frequency * x.value);
+  if (part <= kPressed) return {};
   const double s = share({penetration, law.depth}), square = s * s, a = room(s);
-  const double factor = (1 + square * (18 + 21 * square)) / std::pow(a, 6);
-  const double angle = duration == 0 ? kUsualAngle : law.frequency * std::abs(duration);
-  const double most = std::max(1.0, kBestAngle * kBestAngle / (angle * angle));
-  if (factor >= most) return {std::sqrt(most), 0};
-  const double slope = 24 * s * (2 + square * (11 + 7 * square)) / std::pow(a, 7) / law.depth;
-  return {std::sqrt(factor), 0.5 * slope / std::sqrt(factor)};
+  const double rise = (1 + square * (18 + 21 * square)) / std::pow(a, 6) - 1;
+  const double rise_slope = 24 * s * (2 + square * (11 + 7 * square)) / std::pow(a, 7) / law.depth;
+  const double weight = std::min((part - kPressed) / (1 - kPressed), 1.0);
+  const double weight_slope = part < 1 ? -part * x.slope / x.value / (1 - kPressed) : 0;
+  const double factor = 1 + weight * rise, angle = law.frequency * std::abs(duration);
+  if (factor * angle * angle >= kBestAngle * kBestAngle) return {std::max(1.0, kBestAngle / angle), 0};
+  return {std::sqrt(factor), 0.5 * (weight * rise_slope + weight_slope * rise) / std::sqrt(factor)};
 }
 
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,

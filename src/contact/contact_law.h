@@ -99,13 +99,14 @@ double let_out(const ContactLaw& law, double start, double duration);
 /// this.
 double let_out_rate(const ContactLaw& law, double start);
 
-/// The tangential stiffness hardens as the normal one does: by the factor V''(p) / k of the penetration p at the end.
-/// This is the factor's root, and its derivative with respect to p. While a contact rests, the factor is bounded, so
-/// that a step of the length `duration` [s] damps what sticks; 0: an equilibrium. (docs/notes/contact.md 3)
+/// In a hit the tangential stiffness hardens as the normal one does: by the factor V''(p) / k of the penetration p at
+/// the end. This is the factor's root, and its derivative with respect to p. It is 1 where the penetration is larger
+/// than belongs to the speed of approach, since something presses. It is bounded, so that a step of the length
+/// `duration` [s] damps what sticks. (docs/notes/contact.md 3)
 struct GripRoot {
   double value = 1, slope = 0;
 };
-GripRoot grip_root(const ContactLaw& law, double penetration, double duration);
+GripRoot grip_root(const ContactLaw& law, double penetration, double speed, double duration);
 
 /// Friction as a tangential spring. `stretch`: at the end of the step [m], so that ContactLaw::grip / 2 times its
 /// square is the stored energy. `pull`: the root of the hardening times the stretch [m]. The friction force is

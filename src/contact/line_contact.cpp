@@ -345,7 +345,7 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
     point.normal = sign * normal;
     point.push = push * point.normal;
     point.friction.setZero();
-    const double root = old.root > 0 ? old.root : grip_root(law, felt, 0).value;
+    const double root = old.root > 0 ? old.root : 1;
     if (law.friction > 0)
       point.friction = -sign * law.grip * contact_grip(law, old.stretch, Vector3::Zero(), normal, push, root).pull;
     point.gap = gap;
@@ -386,8 +386,8 @@ ForceMeasures LineContact::measures(const State& state, const double*, const int
       }
       for (int i = 0; i <= search_.line().order; ++i)
         add(row, search_.line().elements[place.element][i], -weights[i], axes[k], offset + below);
-      const double penetration = search_.radius_of(pair) - offset.norm(), root = grip_root(law, penetration, 0).value;
-      out.stiffness(row, row) = k == 0 ? contact_push(law, {0, penetration, 0}).slope : root * root * law.grip;
+      out.stiffness(row, row) =
+          k == 0 ? contact_push(law, {0, search_.radius_of(pair) - offset.norm(), 0}).slope : law.grip;
     }
   });
   return out;

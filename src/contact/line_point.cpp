@@ -137,7 +137,7 @@ LineAction line_action(const ContactLaw& law, const LineRadii& radii, const Line
   out.work = out.push.value * (start - end_start);
   if (!motion.at_end) add_line_push(radii, motion, with_slope, out);
   if (!(law.friction > 0)) return out;
-  const GripRoot root = grip_root(law, change.end, motion.duration);
+  const GripRoot root = grip_root(law, change.end, change.speed, motion.duration);
   if (change.end > 0) out.memory.root = root.value;
   add_line_grip(law, radii, motion, memory, root, with_slope, out);
   return out;

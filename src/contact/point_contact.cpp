@@ -210,7 +210,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   out.wrench.head<3>() = push.value * gap.gradient;
   if (gap.gradient.isZero(0)) return out;
   if (!(law.friction > 0) && !law.resists_turns()) return out;
-  const GripRoot root = grip_root(law, change.end, motion.duration);
+  const GripRoot root = grip_root(law, change.end, change.speed, motion.duration);
   if (change.end > 0) out.memory.root = root.value;
   const Pushed pushed = flexarm::pushed(gap, push, root);
   if (law.friction > 0) add_grip(law, radius, motion, pushed, memory.stretch, with_slope, out);
@@ -228,7 +228,7 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
   const double rate = let_out_rate(law, memory.start) - distance.gradient.dot(velocity);
   out.push = push_at(law, penetration, rate, approach_speed(penetration, rate, memory.speed));
   // As in a step without motion.
-  const double root = memory.root > 0 ? memory.root : grip_root(law, penetration, 0).value;
+  const double root = memory.root > 0 ? memory.root : 1;
   if (law.friction > 0)
     out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push, root).pull;
   if (law.resists_turns())

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "joints/penetration.h"
 namespace flexarm::test {
 namespace {
 
@@ -196,27 +197,32 @@ Vector3 random_vector(std::mt19937& generator, double size) {
   return {number(generator), number(generator), number(generator)};
 }
 
-TEST(GripRoot, HardensAsTheNormalForceDoes) {
+TEST(GripRoot, HardensInHitsAsTheNormalForceDoes) {
   ContactLaw law;
   law.stiffness = 500;
   law.frequency = 20;
   law.depth = 0.01;
+  const double fast = 10, step = 1e-5;
   for (const double penetration : {0.001, 0.004, 0.006}) {
-    const GripRoot root = grip_root(law, penetration, 1e-5);
-    EXPECT_NEAR(root.value * root.value, contact_push(law, {0, penetration, 0}).slope / law.stiffness,
-                1e-12 * root.value * root.value);
-    const double h = 1e-8;
-    const double slope =
-        (grip_root(law, penetration + h, 1e-5).value - grip_root(law, penetration - h, 1e-5).value) / (2 * h);
-    EXPECT_NEAR(root.slope, slope, 1e-6 * root.slope);
+    const double root = grip_root(law, penetration, fast, step).value;
+    EXPECT_NEAR(root * root, contact_push(law, {0, penetration, 0}).slope / law.stiffness, 1e-12 * root * root);
+    const double x = hardened({penetration, law.depth}).value;
+    EXPECT_EQ(grip_root(law, penetration, 0.5 * law.frequency * x, step).value, 1) << "pressed";
+    for (const double speed : {fast, 0.8 * law.frequency * x}) {
+      constexpr double h = 1e-8;
+      const double slope =
+          (grip_root(law, penetration + h, speed, step).value - grip_root(law, penetration - h, speed, step).value) /
+          (2 * h);
+      EXPECT_NEAR(grip_root(law, penetration, speed, step).slope, slope, 1e-6 * std::abs(slope));
+    }
   }
-  EXPECT_EQ(grip_root(law, -0.001, 1e-5).value, 1);
+  EXPECT_EQ(grip_root(law, -0.001, fast, step).value, 1);
   // What sticks turns by no more than the best angle in a step.
-  const GripRoot pressed = grip_root(law, 0.009, 0.01);
-  EXPECT_NEAR(pressed.value * law.frequency * 0.01, 4, 1e-14);
-  EXPECT_EQ(pressed.slope, 0);
+  const GripRoot deep = grip_root(law, 0.009, 1e3, 0.01);
+  EXPECT_NEAR(deep.value * law.frequency * 0.01, 4, 1e-14);
+  EXPECT_EQ(deep.slope, 0);
   law.depth = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(grip_root(law, 1, 1e-5).value, 1);
+  EXPECT_EQ(grip_root(law, 1, fast, step).value, 1);
 }
 
 TEST(ContactGrip, HasItsSlopesAndDissipates) {
