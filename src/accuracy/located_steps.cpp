@@ -161,7 +161,7 @@ void LocatedSteps::set(int steps, double tolerance) {
   had_contacts = false;
   next_ = 1;
   level_ = kNoHit;
-  is_new_hit_ = false;
+  is_new_hit_ = is_at_event_ = false;
   set_step_of_constants(simulation_, std::min(step_of_scene_, step()));
 }
 
@@ -186,6 +186,7 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
 /// Makes a step of this length, or a shorter one that ends at the first event in it.
 StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
   double tolerance = events_ < kMostEventsInCell ? kFound * step_now() : length;
+  if (is_at_event_) begin_anew(simulation_, length);
   if (has_events_) simulation_.snapshot(before_);
   double whole = length;
   StepResult result = this->step(length, tolerance, watcher);
@@ -193,6 +194,7 @@ StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
   if (is_new_hit_ && result.deepest_halving > 0 && is_in_hit()) {
     simulation_.restore(before_);
     const double longest = std::ldexp(length, -result.deepest_halving);
+    if (is_at_event_) begin_anew(simulation_, longest);
     level_ = std::clamp(static_cast<int>(std::log2(step() / longest)), 0, kMostLevels);
     whole = length = std::min(length, step_now());
     tolerance = events_ < kMostEventsInCell ? kFound * step_now() : length;

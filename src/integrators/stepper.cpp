@@ -32,6 +32,9 @@ constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
 constexpr double kLateRelease = 1e-3;
 /// Number of halvings of a step in which forces have a kink, whose error is proportional to the square of the step.
 constexpr int kKinkHalvings = 3;
+/// After a step, another one that is shorter than this part of it needs new accelerations: velocities across joints are
+/// wrong by the square of the longer step, and Newmark's rule divides that by the shorter one.
+constexpr double kMuchShorter = 0.75;
 /// The least tolerance of Newton's method where motions have kinks: round-off.
 constexpr double kLeastTolerance = 1e-13;
 
@@ -214,6 +217,9 @@ double Stepper::follow_kinks(State& state, StepResult& result) {
 bool Stepper::do_sub_steps(State& state, double duration, const Deadline& deadline, StepResult& result) {
   const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);
+  // What Newton's method leaves of an acceleration grows with the square of the steps' number, and is kept.
+  const bool keeps = keeps_accelerations() && settings_.events.is_on();
+  const double tolerance = settings_.tolerance;
   std::int64_t done = 0;  // in units of step / 2^finest
   const std::int64_t whole = parts_of_step(finest);
   const auto give_up = [&](bool is_late) {
@@ -222,7 +228,9 @@ bool Stepper::do_sub_steps(State& state, double duration, const Deadline& deadli
   };
   while (done < whole) {
     const int level = state.halving_level;
+    if (keeps) settings_.tolerance = std::max(std::ldexp(tolerance, -level), std::min(kLeastTolerance, tolerance));
     const bool is_done = sub_step(state, std::ldexp(duration, -level), result);
+    settings_.tolerance = tolerance;
     const bool is_late = level > 0 && deadline.has_passed();
     result.deepest_halving = std::max(result.deepest_halving, level);
     if (!is_done && result.reason == StepResult::Reason::EventWithin) return false;
@@ -233,6 +241,7 @@ bool Stepper::do_sub_steps(State& state, double duration, const Deadline& deadli
       ++state.halving_level;
       ++result.halvings;
       if (is_late) return give_up(true);  // after the halving, so that the next call starts with a shorter step
+      begin_anew_if_shorter(state, std::ldexp(duration, -state.halving_level));
       continue;
     }
     done += whole >> level;
@@ -250,6 +259,22 @@ bool Stepper::do_sub_steps(State& state, double duration, const Deadline& deadli
   return true;
 }
 
+bool Stepper::keeps_accelerations() const {
+  return !scheme_.is_incremental() && !scheme_.is_static && scheme_.hht == HhtForm::None;
+}
+
+void Stepper::begin_anew_if_shorter(State& state, double step) {
+  const bool is_shorter = state.history.count > 0 && step < kMuchShorter * state.history.steps[0];
+  if (settings_.events.is_on() && is_shorter) begin_anew(state, step);
+}
+
+bool Stepper::begin_anew(State& state, double step) {
+  if (!keeps_accelerations()) return false;
+  if (!accelerations_) accelerations_ = study_library(scheme_).make_acceleration_finder(model_, settings_);
+  accelerations_->renew(state, step);
+  return true;
+}
+
 StepResult Stepper::give_up(bool is_late, StepResult result) {
   if (!explicit_) locate_failure(system_, result);
   if (is_late) result.reason = StepResult::Reason::OutOfTime;
@@ -260,7 +285,8 @@ StepResult Stepper::give_up(bool is_late, StepResult result) {
 StepResult Stepper::initialise(State& state) {
   StepResult found;
   found.converged = true;
-  if (!scheme_.is_incremental()) found = study_library(scheme_).find_accelerations(model_, settings_, state);
+  if (!scheme_.is_incremental())
+    found = study_library(scheme_).make_acceleration_finder(model_, settings_)->find(state);
   system_.initialise(state);
   return found;
 }

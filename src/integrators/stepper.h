@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "flexarm/model/results.h"
+#include "integrators/acceleration_finder.h"
 #include "integrators/deadline.h"
 #include "integrators/motion_kinks.h"
 #include "integrators/newton.h"
@@ -45,6 +46,10 @@ class Stepper {
   void set_step(double step, const EventSearch& events = {});
   /// Sets the tolerance of Newton's method, see StepSettings.
   void set_tolerance(double tolerance);
+  /// For Newmark's rule, before a step of this length [s]: makes accelerations anew after an event, at which forces may
+  /// have jumped. Allocates memory when it is called for the first time. Returns whether the state has changed.
+  /// (docs/schemes.md)
+  bool begin_anew(State& state, double step);
   /// Discards data kept from the last step. To be called after the state was changed by something other than a step.
   void invalidate();
 
@@ -58,6 +63,10 @@ class Stepper {
   void accompany(StepFollower* follower) { follower_ = follower; }
 
  private:
+  /// Whether steps take accelerations over from the step before, as Newmark's rule does.
+  bool keeps_accelerations() const;
+  /// Calls begin_anew() if the next sub-step is much shorter than the last one, and events are located.
+  void begin_anew_if_shorter(State& state, double step);
   StepResult advance_by_scheme(State& state, const Deadline& deadline);
   /// Does sub-steps of this time until it is over, one fails, or a slider leaves. Returns false after a failure.
   bool do_sub_steps(State& state, double duration, const Deadline& deadline, StepResult& result);
@@ -87,6 +96,7 @@ class Stepper {
   bool may_release_;                                   // whether there are sliders that may leave their lines
   std::unique_ptr<DissipativeSubstitute> substitute_;  // null unless OnFailure::Dissipate
   std::unique_ptr<ExplicitStep> explicit_;             // null unless the scheme is explicit
+  std::unique_ptr<AccelerationFinder> accelerations_;  // null until begin_anew()
   State before_;                                       // state at the beginning of a composed step, to undo it
   double begin_ = 0, event_ = 0;                       // start of the whole step; time from there to the event [s]
   double rest_ = 0;                                    // what is left of a step that has ended early [s]

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "flexarm/model/results.h"
+#include "integrators/acceleration_finder.h"
 #include "integrators/scheme_family.h"
 #include "integrators/step_settings.h"
 
@@ -15,9 +15,8 @@ struct StudyLibrary {
   /// Creates the family of the configuration's scheme.
   std::unique_ptr<SchemeFamily> (*make_family)(const StepConfiguration& configuration,
                                                const StepPrestrains& prestrains);
-  /// Sets the accelerations of a state, which Newmark's family starts from, by a short step.
-  /// @returns the result of that step; if it failed, accelerations are zero
-  StepResult (*find_accelerations)(const Model& model, const StepSettings& settings, State& state);
+  /// Creates what finds the accelerations from which Newmark's family starts. `settings`: of the steps to come.
+  std::unique_ptr<AccelerationFinder> (*make_acceleration_finder)(const Model& model, const StepSettings& settings);
 };
 
 /// The name of the library's only symbol: a `const StudyLibrary`.

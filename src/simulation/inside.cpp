@@ -125,6 +125,10 @@ double step_of_constants(const Simulation& simulation) {
 void set_step_of_constants(Simulation& simulation, double step) {
   Inside::of(simulation).set_step_of_constants(step);
 }
+void begin_anew(Simulation& simulation, double step) {
+  auto& inside = Inside::of(simulation);
+  if (inside.stepper->begin_anew(inside.state, step)) inside.forget_published();
+}
 double event_of(const Simulation& simulation) {
   return Inside::of(simulation).stepper->event();
 }

@@ -78,6 +78,9 @@ double step_of_constants(const Simulation& simulation);
 /// Gives the scheme the constants of this step [s]. What dampers store of the motion changes with them; the difference
 /// is dissipated, or is work.
 void set_step_of_constants(Simulation& simulation, double step);
+/// Lets the scheme forget the forces from before an event that the last step has ended at. The next step will have this
+/// length [s].
+void begin_anew(Simulation& simulation, double step);
 /// For a step that ended as StepResult::Reason::EventWithin: time of the event from the beginning of the step [s].
 double event_of(const Simulation& simulation);
 

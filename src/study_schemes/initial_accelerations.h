@@ -1,15 +1,34 @@
 #pragma once
-/// The accelerations from which Newmark's family starts.
+/// The accelerations from which Newmark's family starts, and starts anew after a kink.
 
-#include "flexarm/model/results.h"
-#include "integrators/step_settings.h"
-#include "model/model.h"
-#include "model/state.h"
+#include <vector>
+
+#include "integrators/acceleration_finder.h"
+#include "integrators/stepper.h"
 
 namespace flexarm {
 
-/// Sets the accelerations of a state from a short momentum-conserving step. `of_step`: settings of the steps to come.
-/// @returns the result of that step; if it failed, accelerations are zero
-StepResult find_accelerations(const Model& model, const StepSettings& of_step, State& state);
+/// Takes accelerations from short momentum-conserving steps: these need none themselves, and have the means of all
+/// forces. Allocates no memory after its first step.
+class InitialAccelerations : public AccelerationFinder {
+ public:
+  /// `of_step`: settings of the steps to come. The model must outlive this.
+  InitialAccelerations(const Model& model, const StepSettings& of_step);
+
+  StepResult find(State& state) override;
+  void renew(State& state, double step) override;
+
+ private:
+  StepResult find(State& state, double step);
+  /// Gives slaves of joints the velocities that follow from those of their masters and from the joints' rates.
+  void put_on_joints(State& state);
+
+  const Model& model_;
+  double first_step_;  // [s]
+  Stepper momentum_;
+  State moved_;
+  std::vector<NodePose> poses_;      // scratch
+  std::vector<Vector6> velocities_;  // scratch
+};
 
 }  // namespace flexarm

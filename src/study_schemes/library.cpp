@@ -13,8 +13,12 @@ std::unique_ptr<SchemeFamily> make_family(const StepConfiguration& configuration
   return std::make_unique<MomentumBeams>(configuration, prestrains);
 }
 
+std::unique_ptr<AccelerationFinder> make_acceleration_finder(const Model& model, const StepSettings& settings) {
+  return std::make_unique<InitialAccelerations>(model, settings);
+}
+
 }  // namespace
 }  // namespace flexarm
 
 extern "C" const flexarm::StudyLibrary flexarm_study_schemes_library;
-const flexarm::StudyLibrary flexarm_study_schemes_library = {flexarm::make_family, flexarm::find_accelerations};
+const flexarm::StudyLibrary flexarm_study_schemes_library = {flexarm::make_family, flexarm::make_acceleration_finder};
