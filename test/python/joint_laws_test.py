@@ -23,8 +23,9 @@ ARM = """<robot name="law"><link name="world"/>
 <limit lower="{lower}" upper="3" effort="{effort}" velocity="1e9"/>{joint}</joint>{parts}
 <simulation><gravity xyz="0 -9.81 0"/><integrator step="0.001"/><initial joint="hinge" position="1"/>
 <probe name="tip" link="arm" at="0.8 0 0"/>{simulation}</simulation></robot>"""
-# Of each law: what the scene has, and the schemes that are tried. Newmark's rule is left out where friction turns around
-# within a hit on a stop: docs/schemes.md says why. Explicit schemes refuse dry friction, em4 refuses it and samples.
+# Of each law: what the scene has, and the schemes that are tried. Newmark's rule is left out where friction turns
+# around within a hit on a stop: docs/schemes.md says why. Explicit schemes refuse dry friction, em4 refuses it and
+# samples.
 LAWS = {
     "damping": ({"joint": '<dynamics damping="0.7"/>'}, SCHEMES),
     "smooth friction": ({"joint": '<dynamics friction="0.8"/>'}, CONSERVING + EXPLICIT),

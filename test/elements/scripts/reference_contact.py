@@ -149,8 +149,8 @@ def grip_factor(share):
 
 def friction_force(memory, slip, normal, force, limit, stiffness):
     """Return (new memory, its derivatives with respect to slip, unit normal and normal force). The force on B is
-    stiffness * memory. With a tangential stiffness of stiffness * root**2: root * slip and force / root in place of slip
-    and force, and the force on B is root times as large."""
+    stiffness * memory. With a tangential stiffness of stiffness * root**2: root * slip and force / root in place of
+    slip and force, and the force on B is root times as large."""
     whole = memory + slip
     projector = I3 - np.outer(normal, normal)
     trial = projector @ whole
