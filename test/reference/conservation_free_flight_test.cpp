@@ -11,7 +11,7 @@ constexpr int kFlightSteps = 10000;
 constexpr double kEnergyTolerance = 1e-9, kMomentumTolerance = 1e-10;
 
 void expect_conserved(const SceneBuilder& builder, const std::string& scheme, double step, bool energy) {
-  Simulation simulation(builder.scene, options(scheme, step, 1e-12));
+  Simulation simulation(builder.scene, options(scheme, step, 1e-10));
   InvariantDrift drift(simulation);
   double strain = 0;
   run(simulation, kFlightSteps, [&] {
