@@ -389,7 +389,8 @@ TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
 // When a contact is no longer near, its stored energy is dissipated.
 TEST(ContactElement, AccountsForWhatIsRememberedFarAway) {
   const BallAndPlate scene(-0.2, -0.21);
-  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0, 0, 0, 0, 0, 0}, left(memory.size(), 1.0);
+  std::vector<double> memory = {0.3, 0.001, 0.002}, left(PointMemory::kSize, 1.0);
+  memory.resize(PointMemory::kSize, 0.0);
   ForceStep step = scene.step();
   step.memory = memory.data();
   step.new_memory = left.data();
