@@ -66,27 +66,16 @@ TEST_P(FreeTree, ConservesWithEveryKindOfJoint) {
   EXPECT_LT(drift.angular_momentum(), 1e-11);
 }
 
-const std::vector<std::pair<scene::JointKind, std::string>>& joint_kinds() {
-  using scene::JointKind;
-  static const std::vector<std::pair<JointKind, std::string>> list = {
-      {JointKind::Fixed, "fixed"},         {JointKind::Revolute, "revolute"},   {JointKind::Continuous, "continuous"},
-      {JointKind::Prismatic, "prismatic"}, {JointKind::Planar, "planar"},       {JointKind::Floating, "floating"},
-      {JointKind::Spherical, "spherical"}, {JointKind::Universal, "universal"}, {JointKind::Cylindrical, "cylindrical"},
-      {JointKind::PinSlot, "pin_slot"}};
-  return list;
-}
-
 INSTANTIATE_TEST_SUITE_P(Joints, FreeTree,
                          ::testing::Combine(::testing::ValuesIn(conserving_schemes()), ::testing::ValuesIn([] {
                                               std::vector<scene::JointKind> kinds;
-                                              for (const auto& [kind, name] : joint_kinds()) kinds.push_back(kind);
+                                              for (const auto& traits : named_joint_kinds())
+                                                kinds.push_back(traits.kind);
                                               return kinds;
                                             }())),
                          [](const auto& info) {
-                           for (const auto& [kind, name] : joint_kinds())
-                             if (kind == std::get<1>(info.param))
-                               return std::string(std::get<0>(info.param).name) + "_" + name;
-                           return std::string();
+                           return std::string(std::get<0>(info.param).name) + "_" +
+                                  scene::traits_of(std::get<1>(info.param)).name;
                          });
 
 // The scheme table lists these claims. A scheme that loses or gains a claim fails here.

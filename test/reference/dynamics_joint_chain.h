@@ -2,6 +2,7 @@
 /// Free beams and trees of links with every kind of joint, for tests of invariants and of Newton's method.
 
 #include "reference/dynamics_runs.h"
+#include "scene/joint_kinds.h"
 
 namespace flexarm::test {
 
@@ -14,6 +15,14 @@ inline Matrix3 body_inertia() {
   Matrix3 inertia;
   inertia << 0.5, 0.05, 0.02, 0.05, 0.6, -0.03, 0.02, -0.03, 0.7;
   return inertia;
+}
+
+/// The kinds of joints that a scene names, without <couple> or <slide>.
+inline std::vector<scene::JointKindTraits> named_joint_kinds() {
+  std::vector<scene::JointKindTraits> out;
+  for (const scene::JointKindTraits& traits : scene::joint_kinds())
+    if (traits.type || traits.release) out.push_back(traits);
+  return out;
 }
 
 /// A floating beam "trunk" with a beam "branch" on a joint of the given kind at its tip. The branch carries a rigid

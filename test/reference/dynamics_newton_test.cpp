@@ -41,21 +41,16 @@ TEST_P(Newton, QuadraticOnALargeStepOfAFlexibleBeam) {
 }
 
 TEST_P(Newton, QuadraticWithEveryKindOfJoint) {
-  const std::vector<std::pair<std::string, JointKind>> kinds = {
-      {"fixed", JointKind::Fixed},         {"revolute", JointKind::Revolute},   {"continuous", JointKind::Continuous},
-      {"prismatic", JointKind::Prismatic}, {"planar", JointKind::Planar},       {"floating", JointKind::Floating},
-      {"spherical", JointKind::Spherical}, {"universal", JointKind::Universal}, {"cylindrical", JointKind::Cylindrical},
-      {"pin_slot", JointKind::PinSlot}};
-  for (const auto& [name, kind] : kinds) {
-    SceneBuilder b = free_tree(kind);
+  for (const scene::JointKindTraits& traits : named_joint_kinds()) {
+    SceneBuilder b = free_tree(traits.kind);
     b.scene.initial_links[0].angular *= 3;
     b.load("hand", {0.2, 0.1, 0}, {3, 6, 2}, {0.3, 0.6, 0.3});
     for (scene::JointDescription& joint : b.scene.joints) joint.damping = 0.3;
     Simulation simulation(b.scene, full_newton(options(GetParam(), 0.1, 1e-12)));
     const StepResult result = simulation.step();
     ASSERT_TRUE(result.converged);
-    ASSERT_EQ(result.halvings, 0) << name;
-    expect_quadratic(update_norms_of(simulation), GetParam() + " " + name);
+    ASSERT_EQ(result.halvings, 0) << traits.name;
+    expect_quadratic(update_norms_of(simulation), GetParam() + " " + traits.name);
   }
 }
 
