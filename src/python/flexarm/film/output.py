@@ -76,7 +76,6 @@ def encode(path, kind, rate, frames, samples):
         try:
             for frame in frames:
                 ffmpeg.stdin.write(frame)
-            ffmpeg.stdin.close()
         except BrokenPipeError:
             pass  # it has failed, and says why
         except BaseException:
