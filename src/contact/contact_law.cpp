@@ -20,7 +20,8 @@ constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
 constexpr double kSlow = 1e-3;
 /// Phase angle by which a step advances a sticking oscillator that the step damps best.
 constexpr double kBestAngle = 4;
-/// What is deeper than belongs to its speed of approach by more than 1 / kPressed is pressed, and no hit.
+/// In a hit, the hardened penetration is at most the speed of approach over the frequency. If it is more than
+/// 1 / kPressed times as large, something presses.
 constexpr double kPressed = 0.5;
 /// An initial penetration decays to 1/e while the contact's oscillator advances by this phase angle.
 constexpr double kLetOutAngle = 100;
