@@ -5,8 +5,7 @@
 namespace flexarm {
 
 StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend, Space space)
-    : model_(model),
-      dof_(model),
+    : dof_(model),
       configuration_(model, scheme, dof_),
       histories_(model),
       prestrains_(configuration_),

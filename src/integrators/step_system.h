@@ -131,7 +131,6 @@ class StepSystem {
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 
-  const Model& model_;
   DegreesOfFreedom dof_;
   StepConfiguration configuration_;
   StepHistories histories_;
