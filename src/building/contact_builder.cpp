@@ -317,24 +317,28 @@ class ContactBuilder {
     if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
     require_no_turn_grip(contact);
     const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge enters and leaves the tube
-    join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size),
+    join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size, false),
                    law_of(contact, body, tube, at_a_time), placed_);
     return is_small_ball;
   }
 
   /// Stations of each node or element. `spacing`: largest distance of points on edges, the size of the other side.
-  static std::vector<ContactStations> stations_of(const Side& side, double spacing) {
+  /// `on_flat`: for the flat shapes of the other side, see contact_points().
+  static std::vector<ContactStations> stations_of(const Side& side, double spacing, bool on_flat) {
     std::vector<ContactStations> out = side.tubes;
     for (const ContactSurface& surface : side.surfaces) {
       ContactStations body{{surface.node}, {}, 0};
       for (const ContactShape& shape : surface.shapes) {
-        const std::vector<ContactPoint> points = contact_points(shape, spacing);
+        const std::vector<ContactPoint> points = contact_points(shape, spacing, on_flat);
         body.at_a_time += points_at_a_time(shape, points);
         for (const ContactPoint& point : points) {
           ContactStation station;
           station.arm = point.arm;
           station.radius = point.radius;
           station.outwards = point.outwards;
+          station.share = point.share;
+          station.rim = point.rim;
+          station.axis = point.axis;
           body.stations.push_back(station);
         }
       }
@@ -359,9 +363,32 @@ class ContactBuilder {
           "along their lines");
   }
 
+  static bool has_rims(const Side& side) {
+    const auto is_rim = [](const ContactShape& shape) { return std::holds_alternative<Cylinder>(shape.kind); };
+    return std::any_of(side.surfaces.begin(), side.surfaces.end(), [&](const ContactSurface& each) {
+      return std::any_of(each.shapes.begin(), each.shapes.end(), is_rim);
+    });
+  }
+
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
-    for (const ContactStations& stations : stations_of(first, second.size))
+    if (!has_rims(first)) return join_stations(contact, first, second, second.surfaces, false);
+    // Rims touch flat shapes only. Other shapes are touched by points on the rims.
+    for (const bool on_flat : {true, false}) {
+      std::vector<ContactSurface> surfaces;
       for (const ContactSurface& surface : second.surfaces) {
+        ContactSurface part{surface.node, {}};
+        std::copy_if(surface.shapes.begin(), surface.shapes.end(), std::back_inserter(part.shapes),
+                     [&](const ContactShape& shape) { return is_flat(shape) == on_flat; });
+        if (!part.shapes.empty()) surfaces.push_back(std::move(part));
+      }
+      join_stations(contact, first, second, surfaces, on_flat);
+    }
+  }
+
+  void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second,
+                     const std::vector<ContactSurface>& surfaces, bool on_flat) {
+    for (const ContactStations& stations : stations_of(first, second.size, on_flat))
+      for (const ContactSurface& surface : surfaces) {
         const auto& nodes = stations.nodes;
         if (std::find(nodes.begin(), nodes.end(), surface.node) != nodes.end()) continue;
         // Each station of a tube has its share of the whole (ContactStation::share), so there is no further division.

@@ -41,10 +41,11 @@ double deepest_start(const Model& model, const ContactStations& side, const Cont
   double deepest = -std::numeric_limits<double>::infinity();
   for (const ContactStation& station : side.stations)
     for (const ContactShape& shape : surface.shapes) {
-      const Vector3 middle = seen_from(surface, middle_of(side, station, pose_of), pose_of);
+      const int face = face_of(side, station, surface, shape, 0, pose_of);
+      const Vector3 point = place_of(side, station, surface, shape, face, pose_of).point();
       const Matrix3 outwards = outwards_of(side, station, surface, pose_of);
-      const double start = start_inside(shape, {}, station.radius, middle, outwards).start;
-      deepest = std::max(deepest, start > 0 ? start : station.radius - shape.gap(middle));
+      const double start = start_inside(shape, {}, station.radius, point, outwards, face).start;
+      deepest = std::max(deepest, start > 0 ? start : station.radius - shape.gap(point));
     }
   return deepest;
 }

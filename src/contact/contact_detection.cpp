@@ -55,7 +55,7 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   for (const ContactShape& shape : surface_.shapes) {
     if (shape.gap(bounds.middle) >= most) continue;
     for (const ContactStation& station : side_.stations) {
-      const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
+      const double gap = shape.gap(place(station, poses_in(start.poses))) - station.reach();
       const double way = duration * velocity(station, poses_in(start.poses), start.velocities).norm();
       if (gap < kMoreWay * way + close) return all;
     }
@@ -85,28 +85,24 @@ void ContactElement::for_each_passage(const ForceStep& step, const Visit& visit)
     const double* memory = step.memory + PointMemory::kSize * k;
     for (const ContactStation& station : side_.stations) {
       const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
-      const bool is_far = shape.gap(from) - station.radius > (to - from).norm();
-      if (!is_far && !visit(passage(station, shape, from, to, memory_at(memory), step), shape)) return;
+      const bool is_far = shape.gap(from) - station.reach() > (to - from).norm();
+      if (!is_far && !visit(passage(station, shape, memory_at(memory), step), shape)) return;
       memory += PointMemory::kSize * shapes;
     }
   }
 }
 
 ContactElement::Passage ContactElement::passage(const ContactStation& station, const ContactShape& shape,
-                                                const Vector3& from, const Vector3& to, const PointMemory& memory,
-                                                const ForceStep& step) const {
-  PointMotion motion;
-  motion.begin = from;
-  motion.end = to;
+                                                const PointMemory& memory, const ForceStep& step) const {
+  PointMotion motion = motion_of(station, shape, memory.face, step);
   motion.duration = std::abs(step.duration);
-  motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
+  const Vector3 from = motion.begin_point(), to = motion.end_point();
   Passage out{from, to, felt_shape(shape, law_, station.radius, motion, memory), {}, {}, {}, 0};
   const FeltShape& felt = out.felt;
   if (!felt.is_felt) return out;
   out.begin = felt.shape.distance(from);
   out.end = felt.shape.distance(to);
-  out.begin_rate =
-      let_out_rate(law_, felt.start) - out.begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
+  out.begin_rate = let_out_rate(law_, felt.start) - out.begin.gradient.dot(motion.begin_velocity);
   const double end_start = let_out(law_, felt.start, step.duration);
   out.change = {felt.radius - felt.start - out.begin.value, felt.radius - end_start - out.end.value, motion.duration};
   out.change.speed = approach_speed(out.change.begin, out.begin_rate, memory.speed);

@@ -46,14 +46,14 @@ ContactElement::ContactElement(std::vector<std::string> links, ContactStations s
       is_reversed_(is_reversed) {
   assert(!side_.nodes.empty() && side_.nodes.size() <= ContactStation::kMostNodes);
   for (const ContactStation& station : side_.stations) {
-    size_ = std::max(size_, station.arm.norm() + station.radius);
+    size_ = std::max(size_, station.arm.norm() + station.reach());
     middle_arm_ += station.arm / static_cast<double>(side_.stations.size());
     double sum = 0;
     for (const double weight : station.weights) sum += std::abs(weight);
     spread_ = std::max(spread_, sum);
   }
   for (const ContactStation& station : side_.stations)
-    own_radius_ = std::max(own_radius_, (station.arm - middle_arm_).norm() + station.radius);
+    own_radius_ = std::max(own_radius_, (station.arm - middle_arm_).norm() + station.reach());
 }
 
 int ContactElement::memory_size() const {
@@ -71,8 +71,9 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
 void ContactElement::start(const State& state, const double*, double* memory) const {
   const auto pose_of = poses_in(state);
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    put(start_inside(shape, law_, station.radius, place(station, pose_of),
-                     outwards_of(side_, station, surface_, pose_of)),
+    const int face = face_of(side_, station, surface_, shape, 0, pose_of);
+    put(start_inside(shape, law_, station.radius, place(station, shape, face, pose_of).point(),
+                     outwards_of(side_, station, surface_, pose_of), face),
         memory);
     memory += PointMemory::kSize;
     return true;
@@ -136,6 +137,52 @@ ContactElement::Placed ContactElement::placed(const ContactStation& station, con
   return out;
 }
 
+/// A rim over a step. Its lowest point moves if it tilts. (docs/notes/contact.md 1.2)
+struct ContactElement::Tilt {
+  bool tilts = false;          // false: the station is no rim
+  Vector3 axis, end_axis;      // of the rim, world axes, over the step and at the end
+  Vector3 normal, end_normal;  // of the face, likewise
+  RimLever lever;              // of the push, about `axis` x `normal`
+  Matrix3 by_spin;             // of the offset at the end, all in the frame of the shapes
+
+  /// Derivative of the end's cosine between axis and normal with respect to a spin of the rim, world axes.
+  Eigen::RowVector3d cosine_by_spin() const { return end_axis.cross(end_normal).transpose(); }
+};
+
+ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const ContactShape& shape,
+                                          const PointMotion& motion, const Frames& frames,
+                                          const ForceStep& step) const {
+  Tilt out;
+  if (station.rim == 0) return out;
+  out.tilts = true;
+  const Vector3 normal = face_normal(shape, motion.face);
+  const Vector3 begin_axis = poses_in(step.begin)(side_.nodes[0]).rotation * station.axis;
+  out.end_axis = poses_in(step.end)(side_.nodes[0]).rotation * station.axis;
+  out.end_normal = frames.base_end.rotation * normal;
+  out.axis = frames.weight * out.end_axis + (1 - frames.weight) * begin_axis;
+  out.normal = frames.axes * normal;
+  const double end = out.end_axis.dot(out.end_normal);
+  out.lever = rim_lever(station.rim, step.at_end ? end : begin_axis.dot(frames.base_begin.rotation * normal), end);
+  if (step.at_end) out.lever.slope *= 2;  // the lever is symmetric in both cosines
+  out.by_spin =
+      lowest_point_by_spin({motion.end, frames.base_end.rotation.transpose() * out.end_axis, station.rim}, normal);
+  return out;
+}
+
+PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
+                                      const ForceStep& step) const {
+  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
+  PointMotion out;
+  out.face = face_of(side_, station, surface_, shape, remembered, begin_of);
+  const StationPlace begin = place_of(side_, station, surface_, shape, out.face, begin_of),
+                     end = place_of(side_, station, surface_, shape, out.face, end_of);
+  out.begin = begin.middle, out.begin_offset = begin.offset;
+  out.end = end.middle, out.end_offset = end.offset;
+  if (step.duration != 0) out.begin_velocity = velocity(station, begin_of, step.velocities, begin.offset);
+  out.outwards = outwards_of(side_, station, surface_, begin_of);
+  return out;
+}
+
 void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& action) const {
   std::fill(step.new_memory, step.new_memory + memory_size(), 0.0);
   action.residual.setZero();
@@ -149,36 +196,37 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   double* new_memory = step.new_memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
-    PointMotion motion;
-    motion.begin = place(station, poses_in(step.begin));
-    motion.end = place(station, poses_in(step.end));
     // The gap is a lower bound of the distance to the surface, so no contact is possible in this step.
-    if (is_new && shape.gap(motion.begin) - station.radius > (motion.end - motion.begin).norm()) {
-      memory += PointMemory::kSize;
-      new_memory += PointMemory::kSize;
-      return true;
+    if (is_new) {
+      const Vector3 begin = place(station, poses_in(step.begin)), end = place(station, poses_in(step.end));
+      if (shape.gap(begin) - station.reach() > (end - begin).norm()) {
+        memory += PointMemory::kSize;
+        new_memory += PointMemory::kSize;
+        return true;
+      }
     }
     const Placed placed = this->placed(station, frames, step);
+    const PointMemory old = memory_at(memory);
+    PointMotion motion = motion_of(station, shape, old.face, step);
     motion.turn = frames.axes.transpose() * placed.turn;
-    if (step.duration != 0) motion.begin_velocity = velocity(station, poses_in(step.begin), step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
-    motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
+    const Tilt tilt = this->tilt(station, shape, motion, frames, step);
     const PointAction local =
-        point_action(shape, law_of(station), station.radius, motion, memory_at(memory), action.tangent.size() > 0);
+        point_action(shape, law_of(station), station.radius, motion, old, action.tangent.size() > 0);
     action.dissipated += local.dissipated;
     action.work += local.work;
     put(local.memory, new_memory);
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
-    if (local.acts) add(station, frames, placed, local, action);
+    if (local.acts) add(station, frames, placed, tilt, local, action);
     if (!local.acts || action.tangent.size() == 0) return true;
     if (action.tangent.rows() == 12)
-      add_tangent<12>(station, frames, placed, local, action);
+      add_tangent<12>(station, frames, placed, tilt, local, action);
     else if (action.tangent.rows() == 6)
-      add_tangent<6>(station, frames, placed, local, action);
+      add_tangent<6>(station, frames, placed, tilt, local, action);
     else
-      add_tangent<Eigen::Dynamic>(station, frames, placed, local, action);
+      add_tangent<Eigen::Dynamic>(station, frames, placed, tilt, local, action);
     return true;
   });
 }
@@ -190,16 +238,19 @@ double ContactElement::remembered_energy(const ForceStep& step) const {
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const PointMemory old = memory_at(memory);
     if (old.face != 0 || old.stretch != Vector3::Zero() || old.turned != Vector3::Zero())
-      energy += stored_energy(shape, law_of(station), station.radius, place(station, poses_in(step.begin)), old);
+      energy += stored_energy(shape, law_of(station), station.radius,
+                              place(station, shape, old.face, poses_in(step.begin)).point(), old);
     memory += PointMemory::kSize;
     return true;
   });
   return energy;
 }
 
-void ContactElement::add(const ContactStation& station, const Frames& frames, const Placed& placed,
+void ContactElement::add(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
                          const PointAction& local, ForceAction& action) const {
-  const Vector3 force = frames.axes * local.wrench.head<3>(), couple = frames.axes * local.wrench.tail<3>();
+  const Vector3 force = frames.axes * local.wrench.head<3>();
+  Vector3 couple = frames.axes * local.wrench.tail<3>();
+  if (tilt.tilts) couple += local.push * tilt.lever.value * tilt.axis.cross(tilt.normal);
   Vector6 wrench;
   wrench << force, placed.arm.cross(force) + couple;
   const int count = moving_nodes();
@@ -210,7 +261,7 @@ void ContactElement::add(const ContactStation& station, const Frames& frames, co
 
 template <int kColumns>
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
-                                 const PointAction& local, ForceAction& action) const {
+                                 const Tilt& tilt, const PointAction& local, ForceAction& action) const {
   const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
@@ -235,6 +286,22 @@ void ContactElement::add_tangent(const ContactStation& station, const Frames& fr
   Rows3<kColumns> force = frames.axes * (slope.topLeftCorner<3, 3>() * seen + slope.topRightCorner<3, 3>() * turned);
   Rows3<kColumns> couple =
       frames.axes * (slope.bottomLeftCorner<3, 3>() * seen + slope.bottomRightCorner<3, 3>() * turned);
+  if (tilt.tilts) {
+    // Derivative of the spin of the rim relative to the shapes, world axes.
+    Rows3<kColumns> spin = Rows3<kColumns>::Zero(3, base + 6 * has_base);
+    if (count > 0) spin.template middleCols<3>(3).setIdentity();
+    if (has_base) spin.template middleCols<3>(base + 3) = -Matrix3::Identity();
+    const Rows3<kColumns> offset = tilt.by_spin * (end_axes.transpose() * spin);
+    force += frames.axes * (local.by_offset.template topRows<3>() * offset);
+    couple += frames.axes * (local.by_offset.template bottomRows<3>() * offset);
+    const Vector3 axis = tilt.axis.cross(tilt.normal);
+    const Eigen::RowVector3d push = -local.push_slope * local.normal.transpose();
+    couple += tilt.lever.value * axis * (push * (seen + offset)) +
+              local.push * tilt.lever.slope * axis * (tilt.cosine_by_spin() * spin);
+    const double scale = frames.weight * local.push * tilt.lever.value;
+    if (count > 0) couple.template middleCols<3>(3) += scale * hat(tilt.normal) * hat(tilt.end_axis);
+    if (has_base) couple.template middleCols<3>(base + 3) -= scale * hat(tilt.axis) * hat(tilt.end_normal);
+  }
   if (has_base) {
     force.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
     couple.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
@@ -257,7 +324,8 @@ double ContactElement::energy(const State& state, const double* memory) const {
   double energy = 0;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const ContactLaw law = law_of(station);
-    energy += stored_energy(shape, law, station.radius, place(station, poses_in(state)), memory_at(memory));
+    const PointMemory old = memory_at(memory);
+    energy += stored_energy(shape, law, station.radius, place(station, shape, old.face, poses_in(state)).point(), old);
     memory += PointMemory::kSize;
     return true;
   });
@@ -271,24 +339,31 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
   const double* memory = motion.memory;
   double least = std::numeric_limits<double>::infinity();
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const PointMemory old = memory_at(memory);
+    PointMemory old = memory_at(memory);
     memory += PointMemory::kSize;
-    const Vector3 middle = place(station, pose_of);
+    const StationPlace place = this->place(station, shape, old.face, pose_of);
+    if (place.face != 0) {
+      if (!is_over_face(shape, place.face, place.point())) return true;
+      old.face = place.face;
+    }
     if (old.face == 0) {
-      const double gap = shape.distance(middle).value - station.radius;
+      const double gap = shape.distance(place.point()).value - station.radius;
       least = std::min(least, gap);
       if (gap >= 0) return true;
     }
-    const PointTouch local =
-        point_touch(shape, law_of(station), station.radius, middle, velocity(station, pose_of, motion.velocities), old);
+    const PointTouch local = point_touch(shape, law_of(station), station.radius, place.point(),
+                                         velocity(station, pose_of, motion.velocities, place.offset), old);
     least = std::min(least, local.gap);
     if (local.gap >= 0) return true;
     TouchingPoint point;
-    point.position = body.position + body.rotation * (middle - station.radius * local.normal);
+    point.position = body.position + body.rotation * (place.point() - station.radius * local.normal);
     point.normal = sign * (body.rotation * local.normal);
     point.push = local.push * point.normal;
     point.friction = sign * (body.rotation * local.friction);
     point.couple = sign * (body.rotation * local.couple);
+    if (station.rim > 0)
+      point.couple +=
+          sign * local.push * (body.rotation * couple_beside(rim_of(side_, station, surface_, pose_of), local.normal));
     point.gap = local.gap;
     take(point);
     return true;
@@ -297,10 +372,13 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
 }
 
 template <class Visit>
-void ContactElement::for_each_touching(const State& state, const Visit& visit) const {
+void ContactElement::for_each_touching(const State& state, const double* memory, const Visit& visit) const {
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const SignedDistance distance = shape.distance(place(station, poses_in(state)));
-    if (distance.value < station.radius) visit(station, distance);
+    const StationPlace place = this->place(station, shape, memory_at(memory).face, poses_in(state));
+    memory += PointMemory::kSize;
+    const bool by_face = place.face != 0 && is_over_face(shape, place.face, place.point());
+    const SignedDistance distance = (by_face ? beyond_face(shape, place.face) : shape).distance(place.point());
+    if (distance.value < station.radius) visit(station, place, distance);
     return true;
   });
 }
@@ -309,57 +387,62 @@ int ContactElement::measures_each() const {
   return 1 + (law_.friction > 0 ? 2 : 0) + (law_.spinning > 0 ? 1 : 0) + (law_.rolling > 0 ? 2 : 0);
 }
 
-ForceMeasures ContactElement::measures(const State& state, const double*, const int*) const {
+ForceMeasures ContactElement::measures(const State& state, const double* memory, const int*) const {
   Eigen::Index count = 0;
-  for_each_touching(state, [&](const ContactStation&, const SignedDistance&) { count += measures_each(); });
+  for_each_touching(state, memory, [&](const ContactStation&, const StationPlace&, const SignedDistance&) {
+    count += measures_each();
+  });
   const Eigen::Index columns = 6 * static_cast<Eigen::Index>(reach().size());
   ForceMeasures out{Eigen::MatrixXd::Zero(count, columns), Eigen::MatrixXd::Zero(count, count)};
   const NodePose base = poses_in(state)(surface_.node);
   Eigen::Index row = 0;
-  for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
-    const ContactLaw law = law_of(station);
-    const Vector3 normal = base.rotation * distance.gradient;
-    const Vector3 place = base.rotation * this->place(station, poses_in(state));  // from the shapes' node
-    const Vector3 across = normal.unitOrthogonal(), third = normal.cross(across);
-    // Adds a measure: the relative displacement along an axis, at a point `offset` from the station's middle.
-    const auto add = [&](const Vector3& axis, const Vector3& offset, double stiffness) {
-      for (int i = 0; i < moving_nodes(); ++i) {
-        const Vector3 arm = poses_in(state)(side_.nodes[i]).rotation * station.arm + offset;
-        out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axis.transpose(),
-            station.weights[i] * arm.cross(axis).transpose();
-      }
-      if (surface_.node >= 0)
-        out.rows.block<1, 6>(row, columns - 6) << -axis.transpose(), -(place + offset).cross(axis).transpose();
-      out.stiffness(row, row) = stiffness;
-      ++row;
-    };
-    const auto add_turn = [&](const Vector3& axis) {
-      for (int i = 0; i < moving_nodes(); ++i)
-        out.rows.block<1, 3>(row, 6 * i + 3) = station.weights[i] * axis.transpose();
-      if (surface_.node >= 0) out.rows.block<1, 3>(row, columns - 3) = -axis.transpose();
-      out.stiffness(row, row) = law.turn_grip;
-      ++row;
-    };
-    add(normal, Vector3::Zero(), contact_push(law, {0, station.radius - distance.value, 0}).slope);
-    // Friction acts at the surface, which is below the station's middle by the radius.
-    const Vector3 below = -station.radius * normal;
-    if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
-    if (law.spinning > 0) add_turn(normal);
-    if (law.rolling > 0) add_turn(across), add_turn(third);
-  });
+  for_each_touching(
+      state, memory, [&](const ContactStation& station, const StationPlace& seen, const SignedDistance& distance) {
+        const ContactLaw law = law_of(station);
+        const Vector3 normal = base.rotation * distance.gradient;
+        const Vector3 place = base.rotation * seen.middle;  // from the shapes' node
+        const Vector3 across = normal.unitOrthogonal(), third = normal.cross(across);
+        // Adds a measure: the relative displacement along an axis, at a point `offset` from the station's middle.
+        const auto add = [&](const Vector3& axis, const Vector3& offset, double stiffness) {
+          for (int i = 0; i < moving_nodes(); ++i) {
+            const Vector3 arm = poses_in(state)(side_.nodes[i]).rotation * station.arm + offset;
+            out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axis.transpose(),
+                station.weights[i] * arm.cross(axis).transpose();
+          }
+          if (surface_.node >= 0)
+            out.rows.block<1, 6>(row, columns - 6) << -axis.transpose(), -(place + offset).cross(axis).transpose();
+          out.stiffness(row, row) = stiffness;
+          ++row;
+        };
+        const auto add_turn = [&](const Vector3& axis) {
+          for (int i = 0; i < moving_nodes(); ++i)
+            out.rows.block<1, 3>(row, 6 * i + 3) = station.weights[i] * axis.transpose();
+          if (surface_.node >= 0) out.rows.block<1, 3>(row, columns - 3) = -axis.transpose();
+          out.stiffness(row, row) = law.turn_grip;
+          ++row;
+        };
+        const Vector3 offset = base.rotation * seen.offset;
+        add(normal, offset, contact_push(law, {0, station.radius - distance.value, 0}).slope);
+        // Friction acts at the surface, which is below the station's middle by the radius.
+        const Vector3 below = offset - station.radius * normal;
+        if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
+        if (law.spinning > 0) add_turn(normal);
+        if (law.rolling > 0) add_turn(across), add_turn(third);
+      });
   return out;
 }
 
-DamperTensions ContactElement::dampers(const State& state, const double*, const Eigen::VectorXd& rates) const {
+DamperTensions ContactElement::dampers(const State& state, const double* memory, const Eigen::VectorXd& rates) const {
   const int each = measures_each();
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
-  for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
-    // The damping for slow motions, see contact_push().
-    const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
-    slopes[row] = 2 * law_of(station).stiffness * law_.restitution.damping_of_slow_hits() / law_.frequency * slope;
-    row += each;
-  });
+  for_each_touching(
+      state, memory, [&](const ContactStation& station, const StationPlace&, const SignedDistance& distance) {
+        // The damping for slow motions, see contact_push().
+        const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
+        slopes[row] = 2 * law_of(station).stiffness * law_.restitution.damping_of_slow_hits() / law_.frequency * slope;
+        row += each;
+      });
   assert(row == rates.size());
   return {slopes.cwiseProduct(rates), slopes.asDiagonal()};
 }

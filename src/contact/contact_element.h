@@ -15,15 +15,21 @@ constexpr double kMoreWay = 2, kNear = 0.02;
 /// If the cosine between the normals at both ends of a step is below this, the point has passed through something thin.
 constexpr double kOtherSide = -0.5;
 
-/// A contact point of a body or of a beam element: a ball (radius 0 for a corner). On a body its middle is fixed to the
-/// node. On a beam it is on the line: the sum of the nodes' positions times `weights`.
+/// A contact point of a body or of a beam element: a ball (radius 0 for a corner), or the lowest point of a body's rim.
+/// On a body its middle is fixed to the node. On a beam it is on the line: the sum of the nodes' positions times
+/// `weights`.
 struct ContactStation {
   static constexpr int kMostNodes = 5;
   std::array<double, kMostNodes> weights = {1};
   Vector3 arm = Vector3::Zero();       ///< middle of the ball in the frame of the only node; zero for a beam [m]
   double radius = 0;                   ///< of the ball [m]
   double share = 1;                    ///< factor of the law's stiffnesses
+  double rim = 0;                      ///< > 0: radius of a rim, which touches flat shapes only [m]
+  Vector3 axis = Vector3::UnitZ();     ///< of the rim, in the frame of the only node
   Matrix3 outwards = Matrix3::Zero();  ///< for a corner, see ContactPoint, in the frame of the only node
+
+  /// Returns the largest distance of a point that may touch from the middle [m].
+  double reach() const { return radius + rim; }
 };
 
 /// The stations of a body, or of a beam element.
@@ -66,6 +72,37 @@ template <class PoseOf>
 Matrix3 outwards_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
                     const PoseOf& pose_of) {
   return pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.outwards;
+}
+
+/// A station seen from the shapes' node: its middle, and the offset of the point that touches from there.
+struct StationPlace {
+  Vector3 middle, offset = Vector3::Zero();  ///< in the frame of the shapes' node [m]
+  int face = 0;                              ///< see face_of()
+
+  Vector3 point() const { return middle + offset; }
+};
+/// Returns a rim in the frame of a surface's node.
+template <class PoseOf>
+Rim rim_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
+           const PoseOf& pose_of) {
+  return {seen_from(surface, middle_of(side, station, pose_of), pose_of),
+          pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.axis, station.rim};
+}
+/// Returns the only face by which a station may enter: the one below a rim, or `remembered`, if this is not 0; of other
+/// stations 0 (any).
+template <class PoseOf>
+int face_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
+            const ContactShape& shape, int remembered, const PoseOf& pose_of) {
+  if (station.rim == 0) return 0;
+  return remembered != 0 ? remembered : face_below(shape, rim_of(side, station, surface, pose_of));
+}
+/// Returns where a station is. `face`: see face_of().
+template <class PoseOf>
+StationPlace place_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
+                      const ContactShape& shape, int face, const PoseOf& pose_of) {
+  if (station.rim == 0) return {seen_from(surface, middle_of(side, station, pose_of), pose_of)};
+  const Rim rim = rim_of(side, station, surface, pose_of);
+  return {rim.middle, lowest_point(rim, face_normal(shape, face)), face};
 }
 
 /// Contact of each station of one side with each shape of the other side.
@@ -133,12 +170,24 @@ class ContactElement : public ForceElement {
   Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
     return seen_from(surface_, middle_of(side_, station, pose_of), pose_of);
   }
-  /// Returns the velocity of a station's middle relative to the shapes, in their frame [m/s].
+  /// Returns where a station is, in the frame of the shapes. `remembered`: the face of its memory.
   template <class PoseOf>
-  Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities) const;
+  StationPlace place(const ContactStation& station, const ContactShape& shape, int remembered,
+                     const PoseOf& pose_of) const {
+    return place_of(side_, station, surface_, shape, face_of(side_, station, surface_, shape, remembered, pose_of),
+                    pose_of);
+  }
+  /// Returns the velocity of a station's middle, or of the point at an offset from there, relative to the shapes. Both
+  /// vectors are in the shapes' frame [m/s, m].
+  template <class PoseOf>
+  Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities,
+                   const Vector3& offset = Vector3::Zero()) const;
+  /// The motion of a pair's points over a step. `remembered`: the face of its memory.
+  PointMotion motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
+                        const ForceStep& step) const;
   /// What a solved step does to one station and shape.
   struct Passage {
-    Vector3 from, to;  ///< middles of the station in the frame of the shapes [m]
+    Vector3 from, to;  ///< points of the station that touch, in the frame of the shapes [m]
     FeltShape felt;
     SignedDistance begin, end;  ///< from the felt shape
     ContactChange change;
@@ -147,19 +196,23 @@ class ContactElement : public ForceElement {
   /// Calls visit(passage, shape) for all pairs that may touch in a solved step, until it returns false.
   template <class Visit>
   void for_each_passage(const ForceStep& step, const Visit& visit) const;
-  Passage passage(const ContactStation& station, const ContactShape& shape, const Vector3& from, const Vector3& to,
-                  const PointMemory& memory, const ForceStep& step) const;
+  Passage passage(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
+                  const ForceStep& step) const;
   /// Whether a step is too long for one station and shape. `acts`: the element acts on nodes in this step.
   bool is_too_long(const Passage& passage, const ContactShape& shape, const ForceStep& step, bool acts) const;
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
-  void add(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
-           ForceAction& action) const;
+  struct Tilt;
+  /// How a rim is tilted against the face that it may touch.
+  Tilt tilt(const ContactStation& station, const ContactShape& shape, const PointMotion& motion, const Frames& frames,
+            const ForceStep& step) const;
+  void add(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
+           const PointAction& local, ForceAction& action) const;
   /// `kColumns`: six for each moving node, or Eigen::Dynamic.
   template <int kColumns>
-  void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
-                   ForceAction& action) const;
+  void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
+                   const PointAction& local, ForceAction& action) const;
   /// A ball that contains all stations.
   struct Bounds {
     Vector3 middle;  // in the frame of the shapes [m]
@@ -172,9 +225,9 @@ class ContactElement : public ForceElement {
   /// Calls visit(station, shape) for all pairs in the order of the memory, until it returns false.
   template <class Visit>
   void for_each_pair(const Visit& visit) const;
-  /// Calls visit(station, signed distance) for all pairs that touch.
+  /// Calls visit(station, its place, signed distance) for all pairs that touch.
   template <class Visit>
-  void for_each_touching(const State& state, const Visit& visit) const;
+  void for_each_touching(const State& state, const double* memory, const Visit& visit) const;
 
   std::vector<std::string> links_;
   ContactStations side_;
@@ -189,17 +242,18 @@ class ContactElement : public ForceElement {
 
 template <class PoseOf>
 Vector3 ContactElement::velocity(const ContactStation& station, const PoseOf& pose_of,
-                                 const std::vector<Vector6>& velocities) const {
+                                 const std::vector<Vector6>& velocities, const Vector3& offset) const {
   const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
+  const NodePose& base = pose_of(surface_.node);
+  const Vector3 beyond = base.rotation * offset;
   Vector3 velocity = Vector3::Zero();
   for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
     const Vector6 motion = motion_of(side_.nodes[i]);
-    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
+    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm + beyond;
     velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
   }
-  const NodePose& base = pose_of(surface_.node);
   const Vector6 motion = motion_of(surface_.node);
-  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
+  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) + beyond - base.position);
   return base.rotation.transpose() * velocity;
 }
 

@@ -41,10 +41,10 @@ Matrix3 pull_by_end(const ContactGrip& grip, const Pushed& pushed) {
          grip.by_root * pushed.root_by_end.transpose();
 }
 
-/// Adds friction, which acts at the surface of the ball.
+/// Adds friction, which acts at the surface of the ball, or at the lowest point of a rim.
 void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const Pushed& pushed,
               const Vector3& stretch, bool with_slope, PointAction& action) {
-  const Vector3 offset = -radius * pushed.normal;
+  const Vector3 offset = motion.offset() - radius * pushed.normal;
   const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
   const ContactGrip grip = contact_grip(law, stretch, slip, pushed.normal, pushed.push, pushed.root);
   const Vector3 drag = -law.grip * grip.pull;
@@ -53,14 +53,19 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.wrench.head<3>() += drag;
   action.wrench.tail<3>() = offset.cross(drag);
   if (!with_slope) return;
-  const Matrix3& by_end = pushed.by_end;
-  const Matrix3 slip_by_end = Matrix3::Identity() - radius * hat(motion.turn) * by_end;
+  // The point at the end moves the normal, and by it this offset. The offset of a rim moves it and the point.
+  const Matrix3 by_end = -radius * pushed.by_end, turning = hat(motion.turn);
+  const Matrix3 by_offset = by_end + motion.end_weight() * Matrix3::Identity();
   Eigen::Matrix<double, 3, 6> drag_slope;
-  drag_slope << grip.by_slip * slip_by_end + pull_by_end(grip, pushed), -grip.by_slip * hat(offset);
+  drag_slope << grip.by_slip * (Matrix3::Identity() + turning * by_end) + pull_by_end(grip, pushed),
+      -grip.by_slip * hat(offset);
   drag_slope *= -law.grip;
   action.slope.topRows<3>() += drag_slope;
   action.slope.bottomRows<3>() = hat(offset) * drag_slope;
-  action.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_end;
+  action.slope.bottomLeftCorner<3, 3>() -= hat(drag) * by_end;
+  const Matrix3 drag_by_offset = -law.grip * (grip.by_slip * turning * by_offset + pull_by_end(grip, pushed));
+  action.by_offset.topRows<3>() += drag_by_offset;
+  action.by_offset.bottomRows<3>() = hat(offset) * drag_by_offset - hat(drag) * by_offset;
 }
 
 /// Adds the resistance to rotation relative to the surface.
@@ -73,6 +78,7 @@ void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushe
   action.wrench.tail<3>() += couple;
   if (!with_slope) return;
   action.slope.bottomLeftCorner<3, 3>() -= law.turn_grip * pull_by_end(grip, pushed);
+  action.by_offset.bottomRows<3>() -= law.turn_grip * pull_by_end(grip, pushed);
   action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
 }
 
@@ -92,10 +98,22 @@ constexpr double kHalfWay = 1 + 1e-6;
 /// stored at once.
 void lay_on_another(const ContactShape& shape, const ContactLaw& law, const PointMotion& motion, FeltShape& felt) {
   const double deepest = (can_lie_on(shape, felt.face, motion.outwards) ? kLow : 1.0) * law.depth;
-  const int face = face_to_lie_on(shape, felt.face, motion.begin, motion.outwards, deepest);
+  const int face = face_to_lie_on(shape, felt.face, motion.begin_point(), motion.outwards, deepest);
   if (face == 0) return;
   felt.face = face;
-  felt.radius = std::min(beyond_face(shape, face).distance(motion.begin).value, 0.0);
+  felt.radius = std::min(beyond_face(shape, face).distance(motion.begin_point()).value, 0.0);
+}
+
+/// Returns the face by which a point enters in a step, or is already inside; 0: none. PointMotion::face allows only
+/// one.
+int face_of_entry(const ContactShape& shape, const PointMotion& motion) {
+  const Vector3 from = motion.begin_point(), to = motion.end_point();
+  if (motion.face == 0) return shape.gap(from) < 0 ? nearest_face(shape, from) : entered_face(shape, from, to);
+  const ContactShape below = beyond_face(shape, motion.face);
+  const double begin = below.distance(from).value, end = below.distance(to).value;
+  if (begin >= 0 && end >= 0) return 0;
+  const double part = begin > 0 ? begin / (begin - end) : 0;
+  return is_over_face(shape, motion.face, from + part * (to - from)) ? motion.face : 0;
 }
 
 }  // namespace
@@ -124,7 +142,7 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   out.radius = radius;
   out.start = motion.duration != 0 ? memory.start : 0;  // equilibria have no offset
   if (radius > 0 || !has_faces(shape)) return out;
-  const Vector3& from = motion.begin;
+  const Vector3 from = motion.begin_point();
   out.face = memory.face;
   out.radius = -memory.within;
   if (out.face != 0 && !is_over_face(shape, out.face, from)) {
@@ -133,9 +151,8 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   }
   if (out.face == 0) {
     out.radius = 0;
-    const bool is_inside = shape.gap(from) < 0;
-    out.face = is_inside ? nearest_face(shape, from) : entered_face(shape, from, motion.end);
-    if (!is_inside && out.face != 0) lay_on_another(shape, law, motion, out);
+    out.face = face_of_entry(shape, motion);
+    if (out.face != 0 && motion.face == 0 && shape.gap(from) >= 0) lay_on_another(shape, law, motion, out);
   }
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);
@@ -147,14 +164,14 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
 }
 
 PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
-                         const Matrix3& outwards) {
+                         const Matrix3& outwards, int face) {
   PointMemory out;
   const bool by_face = radius == 0 && has_faces(shape);
   if (shape.distance(point).value - radius > kLeastStart) return out;
   if (by_face) {
     // If equal boxes lie on each other, corners are at edges, and the nearest face may be a side.
-    out.face = nearest_face(shape, point);
-    if (!can_lie_on(shape, out.face, outwards))
+    out.face = face != 0 ? face : nearest_face(shape, point);
+    if (face == 0 && !can_lie_on(shape, out.face, outwards))
       if (const int other = face_to_lie_on(shape, 0, point, outwards, kHalfWay * half_width(shape))) out.face = other;
   }
   const ContactShape& felt = by_face ? beyond_face(shape, out.face) : shape;
@@ -177,7 +194,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   // Energy stored at the beginning; what is stored at the end is subtracted below.
   out.dissipated = felt.let_go + held_energy(law, memory);
   if (!felt.is_felt) return out;
-  const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
+  const GapChange gap = gap_change(shape, motion.begin_point(), motion.end_point(), motion.at_end);
   const double end_start = let_out(law, felt.start, motion.duration);
   ContactChange change{felt.radius - felt.start - gap.begin, felt.radius - end_start - gap.end,
                        motion.at_end ? 0.0 : motion.duration};
@@ -199,14 +216,19 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
     return out;
   }
   const double begin_rate =
-      let_out_rate(law, felt.start) - shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
+      let_out_rate(law, felt.start) - shape.distance(motion.begin_point()).gradient.dot(motion.begin_velocity);
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   const ContactPush push = contact_push(law, change);
   if (change.duration != 0) out.memory.speed = remembered_speed(change, begin_rate);
   out.dissipated += push.dissipated;
   out.work = push.value * (felt.start - end_start);
-  if (with_slope)
+  out.normal = gap.end_gradient;
+  out.push = push.value;
+  out.push_slope = push.slope;
+  if (with_slope) {
     out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
+    out.by_offset.topRows<3>() = out.slope.topLeftCorner<3, 3>();
+  }
   out.wrench.head<3>() = push.value * gap.gradient;
   if (gap.gradient.isZero(0)) return out;
   if (!(law.friction > 0) && !law.resists_turns()) return out;

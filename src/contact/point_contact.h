@@ -17,14 +17,22 @@ struct GapChange {
 };
 GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vector3& to, bool at_end);
 
-/// The motion of the ball relative to the shape over a step.
+/// The motion of the ball relative to the shape over a step. Of a rim, the lowest point touches (see rim.h). It has the
+/// offset from the middle, which is zero for balls, and the face in question is chosen before.
 struct PointMotion {
-  Vector3 begin, end;                        ///< positions of the ball's middle [m]
+  Vector3 begin, end;                                                    ///< positions of the middle [m]
+  Vector3 begin_offset = Vector3::Zero(), end_offset = Vector3::Zero();  ///< [m]
+  int face = 0;                              ///< the only one by which the point may enter; 0: any
   Vector3 turn;                              ///< rotation of the ball minus that of the body, tangent-scaled, mean axes
-  Vector3 begin_velocity = Vector3::Zero();  ///< of the ball's middle at the beginning [m/s]
+  Vector3 begin_velocity = Vector3::Zero();  ///< of the ball's middle, or of the point, at the beginning [m/s]
   double duration = 0;                       ///< [s]; 0: an equilibrium
   Matrix3 outwards = Matrix3::Zero();        ///< for a corner, see ContactPoint; at the beginning
   bool at_end = false;                       ///< forces are those at the end; else means over the step, with exact work
+
+  Vector3 begin_point() const { return begin + begin_offset; }
+  Vector3 end_point() const { return end + end_offset; }
+  double end_weight() const { return at_end ? 1 : 0.5; }
+  Vector3 offset() const { return end_weight() * end_offset + (1 - end_weight()) * begin_offset; }
 };
 /// What the contact of one point and one shape remembers from step to step. All numbers are zero without contact.
 struct PointMemory {
@@ -42,6 +50,9 @@ struct PointMemory {
 struct PointAction {
   Vector6 wrench = Vector6::Zero();
   Matrix6 slope = Matrix6::Zero();  ///< derivative with respect to {end, turn} of PointMotion
+  Eigen::Matrix<double, 6, 3> by_offset = Eigen::Matrix<double, 6, 3>::Zero();  ///< to PointMotion::end_offset
+  Vector3 normal = Vector3::Zero();                                             ///< gradient of the gap at the end
+  double push = 0, push_slope = 0;  ///< normal force [N], and its derivative with respect to the penetration at the end
   PointMemory memory;               ///< at the end of the step
   double dissipated = 0;            ///< over the step [J]
   double work = 0;                  ///< done by the decay of the offset, see let_out() [J]
@@ -73,9 +84,9 @@ struct FeltShape {
 };
 FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
                      const PointMemory& memory);
-/// Returns the memory of a point that is inside the shape in an initial state.
+/// Returns the memory of a point that is inside the shape in an initial state. `face`: see PointMotion.
 PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
-                         const Matrix3& outwards);
+                         const Matrix3& outwards, int face = 0);
 /// Returns the stored energy [J].
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory);

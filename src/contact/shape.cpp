@@ -123,13 +123,13 @@ void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, c
   for (int i = 1; i < spans; ++i) points.push_back({begin + (end - begin) * i / spans, 0, outwards});
 }
 
-std::vector<ContactPoint> points_of(const HalfSpace&, double) {
+std::vector<ContactPoint> points_of(const HalfSpace&, double, bool) {
   return {};
 }
-std::vector<ContactPoint> points_of(const Ball& ball, double) {
+std::vector<ContactPoint> points_of(const Ball& ball, double, bool) {
   return {{Vector3::Zero(), ball.radius}};
 }
-std::vector<ContactPoint> points_of(const Box& box, double spacing) {
+std::vector<ContactPoint> points_of(const Box& box, double spacing, bool) {
   std::vector<ContactPoint> out;
   for (int k = 0; k < 8; ++k) {
     const Vector3 corner = box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
@@ -155,7 +155,7 @@ Matrix3 outwards_of(const std::vector<Vector3>& normals) {
   return out;
 }
 
-std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
+std::vector<ContactPoint> points_of(const Hull& hull, double spacing, bool) {
   const std::vector<Vector3>& corners = hull.polytope->corners;
   std::vector<std::vector<Vector3>> at_corners(corners.size());
   std::map<std::pair<int, int>, std::vector<Vector3>> at_edges;  // by edge: the normals of its two faces
@@ -171,17 +171,21 @@ std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
     add_edge_points(corners[edge.first], corners[edge.second], spacing, outwards_of(normals), out);
   return out;
 }
-std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing) {
+std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bool on_flat) {
   std::vector<ContactPoint> out;
-  for (const double z : {-cylinder.half_length, cylinder.half_length})
+  // Under a uniform pressure, two thirds of the radius are the mean arm of what resists spinning.
+  const double inner = on_flat ? 1 - kDrawnIn : 1, share = on_flat ? 2 / (3 * inner) : 1;
+  for (const double z : {-cylinder.half_length, cylinder.half_length}) {
     for (int k = 0; k < kRimPoints; ++k) {
       const double angle = 2 * kPi * k / kRimPoints;
       const Vector3 radial(std::cos(angle), std::sin(angle), 0);
       Matrix3 outwards = Matrix3::Zero();
       outwards.col(0) = radial;
       outwards(2, 2) = z < 0 ? -1 : 1;
-      out.push_back({cylinder.radius * radial + Vector3(0, 0, z), 0, outwards});
+      out.push_back({inner * cylinder.radius * radial + Vector3(0, 0, z), 0, outwards, share});
     }
+    if (on_flat) out.push_back({{0, 0, z}, 0, Matrix3::Zero(), (1 - share) * kRimPoints, cylinder.radius});
+  }
   // For the side: balls along the axis with the cylinder's radius.
   const double end = cylinder.half_length - cylinder.radius;
   if (end <= 0) return out;
@@ -220,13 +224,15 @@ double half_width(const ContactShape& shape) {
   return std::numeric_limits<double>::infinity();
 }
 
-std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
+std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing, bool on_flat) {
   if (shape.is_hollow) return {};
-  std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
+  std::vector<ContactPoint> out =
+      std::visit([&](const auto& each) { return points_of(each, spacing, on_flat); }, shape.kind);
   const Matrix3 axes = shape.place.orientation.toRotationMatrix();
   for (ContactPoint& point : out) {
     point.arm = shape.place * point.arm;
     point.outwards = axes * point.outwards;
+    point.axis = axes * point.axis;
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact/polytope.h"
+#include "contact/rim.h"
 
 namespace flexarm {
 
@@ -71,6 +72,13 @@ bool is_over_face(const ContactShape& shape, int face, const Vector3& point);
 /// Returns the shape that the face would bound if there were no other faces: a half-space, or an infinite cylinder.
 ContactShape beyond_face(const ContactShape& shape, int face);
 
+/// Returns the face whose plane is farthest below the lowest point of a rim over it; 0 for a half-space.
+int face_below(const ContactShape& shape, const Rim& rim);
+/// Returns the unit normal of a flat face, or of a half-space (face 0), outwards.
+Vector3 face_normal(const ContactShape& shape, int face);
+/// Whether the shape has flat faces only, or is a half-space.
+bool is_flat(const ContactShape& shape);
+
 /// Returns half of the shape's smallest width [m]; infinity for a half-space.
 double half_width(const ContactShape& shape);
 
@@ -79,12 +87,18 @@ struct ContactPoint {
   Vector3 arm = Vector3::Zero();       ///< the ball's middle in the node's frame [m]
   double radius = 0;                   ///< [m]
   Matrix3 outwards = Matrix3::Zero();  ///< columns: normals of the faces that meet there, in the node's frame
+  double share = 1;                    ///< of the stiffness of a point
+  double rim = 0;                      ///< > 0: the radius of a rim, of which the lowest point touches [m]
+  Vector3 axis = Vector3::UnitZ();     ///< of the rim, in the node's frame
 };
 /// Returns the contact points of a shape. A ball: itself. A box or hull: its corners, and points on its edges about
 /// `spacing` apart [m], at most kMostEdgePoints on each. A cylinder: kRimPoints on each rim; if it is longer than wide,
-/// also balls along its axis that fill it. A half-space or a hole: none.
-std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
+/// also balls along its axis that fill it. A half-space or a hole: none. `on_flat`: they touch flat faces only. Then a
+/// cylinder has its rims, and the points carry only a face that lies flat: they are drawn in by kDrawnIn of the radius.
+/// They have that part of the stiffness with which the face resists spinning as under a uniform pressure.
+std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing, bool on_flat);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
+constexpr double kDrawnIn = 0.01;
 /// Returns how many of these points touch a plane on which the shape lies: the largest number on one flat face; 1 if
 /// the shape has no faces.
 int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points);

@@ -148,8 +148,7 @@ int nearest_face(const ContactShape& shape, const Vector3& point) {
 
 bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards) {
   if (is_round(shape, face)) return true;
-  const Vector3 normal = beyond_face(shape, face).place.orientation * Vector3::UnitZ();
-  const Vector3 cosines = outwards.transpose() * normal;
+  const Vector3 cosines = outwards.transpose() * face_normal(shape, face);
   return cosines.maxCoeff() <= kAside && cosines.minCoeff() <= kOpposite;
 }
 
@@ -175,6 +174,29 @@ bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
                   [&](const auto& each) { return is_over(each, face - 1, own, kBeside * size_of(each)); });
 }
 
+Vector3 face_normal(const ContactShape& shape, int face) {
+  return (face == 0 ? shape : beyond_face(shape, face)).place.orientation * Vector3::UnitZ();
+}
+
+bool is_flat(const ContactShape& shape) {
+  return !shape.is_hollow && (std::holds_alternative<HalfSpace>(shape.kind) ||
+                              std::holds_alternative<Box>(shape.kind) || std::holds_alternative<Hull>(shape.kind));
+}
+
+int face_below(const ContactShape& shape, const Rim& rim) {
+  const Vector3 middle = own_point(shape, rim.middle);
+  return of_faces(shape, 0, [&](const auto& each) {
+    int best = 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (int face = 0; face < face_count(each); ++face) {
+      const Vector3 normal = face_normal(shape, face + 1);
+      const double height = height_over(each, face, middle) + normal.dot(lowest_point(rim, normal));
+      if (height > highest) highest = height, best = face + 1;
+    }
+    return best;
+  });
+}
+
 ContactShape beyond_face(const ContactShape& shape, int face) {
   if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind); cylinder && face == 1)
     return {Cylinder{cylinder->radius, std::numeric_limits<double>::infinity()}, shape.place};
@@ -188,7 +210,8 @@ int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>&
     for (int face = 0; face < face_count(each); ++face) {
       if (is_round(shape, face + 1)) continue;
       const auto lies_on = [&](const ContactPoint& point) {
-        return std::abs(height_over(each, face, own_point(shape, point.arm)) + point.radius) < kFlush * size_of(each);
+        return point.rim == 0 &&
+               std::abs(height_over(each, face, own_point(shape, point.arm)) + point.radius) < kFlush * size_of(each);
       };
       most = std::max(most, std::count_if(points.begin(), points.end(), lies_on));
     }

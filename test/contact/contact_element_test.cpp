@@ -32,8 +32,8 @@ struct Scene {
   ContactSurface surface;
 };
 
-/// Scenes of a ball and a corner on node 0, and of an element with nodes 0, 2, 3, against shapes on node 1 or on the
-/// world.
+/// Scenes of a ball and a corner, or a rim, on node 0, and of an element with nodes 0, 2, 3, against shapes on node 1
+/// or on the world.
 std::vector<Scene> scenes() {
   const Pose place{{0.05, -0.02, 0.03}, so3::exp_quaternion(Vector3(0.2, 0.1, -0.3))};
   const std::vector<ContactShape> shapes = {{HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
@@ -44,19 +44,23 @@ std::vector<Scene> scenes() {
                                             {Cylinder{0.3, std::numeric_limits<double>::infinity()}, place, true},
                                             {Hull{std::make_shared<Polytope>(roof_polytope({0.4, 0.5, 0.2}, 0.1))},
                                              {place.position + Vector3(0.1, 0, 0), place.orientation}}};
-  ContactStation ball, corner, tube;
+  ContactStation ball, corner, tube, rim;
   ball.arm = {0.1, 0.05, -0.1};
   ball.radius = 0.2;
   corner.arm = {0.05, 0.1, -0.24};
   tube.weights = {0.3, 0.5, 0.2};
   tube.radius = 0.25;
   tube.share = 0.7;
+  rim.arm = {0.05, 0.02, -0.05};
+  rim.rim = 0.25;
+  rim.axis = Vector3(1, 0.3, 0.5).normalized();
   std::vector<Scene> out;
   const char* names[] = {"half-space", "ball", "box", "cylinder", "socket", "bearing", "hull"};
   for (std::size_t k = 0; k < shapes.size(); ++k)
     for (const int base : {1, -1}) {
       out.push_back({names[k], {{0}, {ball, corner}}, {base, {shapes[k]}}});
       out.push_back({names[k], {{0, 2, 3}, {tube}}, {base, {shapes[k]}}});
+      if (is_flat(shapes[k])) out.push_back({names[k], {{0}, {rim}}, {base, {shapes[k]}}});
     }
   return out;
 }
@@ -313,10 +317,11 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
     for (const ContactStation& station : scene.side.stations)
       for (const double penetration : {1e-9, 0.1}) {
         const auto& [name, side, surface] = alone(scene, station, end, penetration);
-        if (side.stations[0].radius <= 0) continue;
+        if (side.stations[0].radius <= 0 || station.rim > 0) continue;
         const ContactLaw law = gripping_law(0.5, 0.5);
         const ContactElement element({"", ""}, side, surface, law);
-        const ForceMeasures measures = element.measures(state, nullptr, element.reach().data());
+        const std::vector<double> memory(element.memory_size());
+        const ForceMeasures measures = element.measures(state, memory.data(), element.reach().data());
         ASSERT_EQ(measures.rows.rows(), 6) << name;
         const double share = side.stations[0].share;
         if (penetration < 1e-6) {
@@ -328,7 +333,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
         const auto push = [&](double rate) {
           return contact_push(law, {penetration - 0.5 * h * rate, penetration + 0.5 * h * rate, h, 0}).value;
         };
-        const double slope = element.dampers(state, nullptr, Eigen::VectorXd::Zero(6)).slope(0, 0);
+        const double slope = element.dampers(state, memory.data(), Eigen::VectorXd::Zero(6)).slope(0, 0);
         // At a light touch, the contact would end within this difference.
         if (penetration > 1e-6) {
           EXPECT_NEAR(slope, share * (push(v) - push(-v)) / (2 * v), 1e-4 * slope) << name;

@@ -72,13 +72,13 @@ TEST(ContactShapes, ThatAreHullsOfBoxesAreTheBoxes) {
     EXPECT_LE(hull.gap(point), one.value + 1e-14);
     EXPECT_EQ(nearest_face(box, point), nearest_face(hull, point));
   }
-  EXPECT_EQ(contact_points(box, 0.1).size(), contact_points(hull, 0.1).size());
+  EXPECT_EQ(contact_points(box, 0.1, false).size(), contact_points(hull, 0.1, false).size());
   EXPECT_NEAR(half_width(hull), half_width(box), 1e-15);
 }
 
 TEST(ContactShapes, TouchAPlaneByThePointsOfAFace) {
   const auto count = [](const ContactShape& shape, double spacing) {
-    return points_at_a_time(shape, contact_points(shape, spacing));
+    return points_at_a_time(shape, contact_points(shape, spacing, false));
   };
   EXPECT_EQ(count({Ball{0.1}, kPlace}, 1), 1);
   EXPECT_EQ(count({Box{{0.3, 0.2, 0.1}}, kPlace}, 10), 4);
@@ -124,7 +124,7 @@ TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
 
 TEST(ContactShapes, HaveTheirPointsOnTheirSurfaces) {
   for (const auto& [name, shape] : all_shapes())
-    for (const ContactPoint& point : contact_points(shape, 0.15))
+    for (const ContactPoint& point : contact_points(shape, 0.15, false))
       EXPECT_NEAR(shape.distance(point.arm).value, -point.radius, 1e-15) << name;
 }
 
@@ -140,7 +140,7 @@ TEST(ContactShapes, AreHolesTurnedInsideOut) {
       EXPECT_GT((kPlace.position - point).dot(hole.distance(point).gradient), 0);
     }
     EXPECT_FALSE(has_faces(hole));
-    EXPECT_TRUE(contact_points(hole, 0.1).empty());
+    EXPECT_TRUE(contact_points(hole, 0.1, false).empty());
     EXPECT_FALSE(passes_through(hole, kPlace * Vector3(0.3, 0, 0), kPlace * Vector3(-0.3, 0.1, 0), 0.01));
   }
 }

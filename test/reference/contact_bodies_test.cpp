@@ -171,8 +171,8 @@ TEST(ContactOfBodies, NewtonsCradleDoesWhatItsEquationsSay) {
 
 // ---------------------------------------------------------------- friction
 
-// A disc that lies flat on its rim points is braked by the moment mu m g R in all, however its points share the load: 2
-// mu g/R. Forces act at the mean of both ends of a step, whose arm is shorter by (rate h)^2/8.
+// A disc that lies flat is braked as by a uniform pressure, by the moment 2/3 mu m g R: 4/3 mu g/R. Forces act at the
+// mean of both ends of a step, whose arm is shorter by (rate h)^2/8.
 TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
   constexpr double kMass = 2, kRadius = 0.1, kHigh = 0.02, kFriction = 0.3, kStiffness = 1e5, kRate = 10, kStep = 1e-3;
   constexpr int kPoints = 24;
@@ -186,7 +186,7 @@ TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
                         floating("disc") + kFloor +
                         contact_of("disc", "floor", fmt::format("friction='{}' stiffness='{}'", kFriction, kStiffness)),
                     start("disc", {0, 0, kHigh / 2 - inside}, {0, 0, 0}, {0, 0, kRate}), kStep);
-  const double braking = 2 * kFriction * kG / kRadius, stop = kRate / braking;
+  const double braking = 4.0 / 3 * kFriction * kG / kRadius, stop = kRate / braking;
   const auto rate = [&] { return simulation.angular_momentum().z() / polar; };
   run_until(simulation, 0.02);  // until all points of the rim slip
   const double first = rate(), begin = simulation.time();
