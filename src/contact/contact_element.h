@@ -224,7 +224,11 @@ class ContactElement : public ForceElement {
   double highest_speed(const ForceStart& start) const;
   /// Calls visit(station, shape) for all pairs in the order of the memory, until it returns false.
   template <class Visit>
-  void for_each_pair(const Visit& visit) const;
+  void for_each_pair(const Visit& visit) const {
+    for (const ContactStation& station : side_.stations)
+      for (const ContactShape& shape : surface_.shapes)
+        if (!visit(station, shape)) return;
+  }
   /// Calls visit(station, its place, signed distance) for all pairs that touch.
   template <class Visit>
   void for_each_touching(const State& state, const double* memory, const Visit& visit) const;
