@@ -338,6 +338,7 @@ class ContactBuilder {
           station.outwards = point.outwards;
           station.share = point.share;
           station.rim = point.rim;
+          station.half = point.half;
           station.axis = point.axis;
           body.stations.push_back(station);
         }
@@ -361,6 +362,16 @@ class ContactBuilder {
           at(contact.location, "<contact>") +
           "spinning and rolling are for contacts of bodies' shapes: expected neither for beams, which are touched "
           "along their lines");
+  }
+
+  /// Leaves out segments where only half-spaces are touched, which a cylinder touches with its rims.
+  static ContactStations for_shapes(ContactStations stations, const ContactSurface& surface) {
+    const auto is_plane = [](const ContactShape& shape) { return std::holds_alternative<HalfSpace>(shape.kind); };
+    auto& all = stations.stations;
+    if (std::all_of(surface.shapes.begin(), surface.shapes.end(), is_plane))
+      all.erase(std::remove_if(all.begin(), all.end(), [](const ContactStation& each) { return each.half > 0; }),
+                all.end());
+    return stations;
   }
 
   static bool has_rims(const Side& side) {
@@ -387,8 +398,9 @@ class ContactBuilder {
 
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second,
                      const std::vector<ContactSurface>& surfaces, bool on_flat) {
-    for (const ContactStations& stations : stations_of(first, second.size, on_flat))
+    for (const ContactStations& all : stations_of(first, second.size, on_flat))
       for (const ContactSurface& surface : surfaces) {
+        const ContactStations stations = for_shapes(all, surface);
         const auto& nodes = stations.nodes;
         if (std::find(nodes.begin(), nodes.end(), surface.node) != nodes.end()) continue;
         // Each station of a tube has its share of the whole (ContactStation::share), so there is no further division.

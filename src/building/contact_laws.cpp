@@ -42,10 +42,11 @@ double deepest_start(const Model& model, const ContactStations& side, const Cont
   for (const ContactStation& station : side.stations)
     for (const ContactShape& shape : surface.shapes) {
       const int face = face_of(side, station, surface, shape, 0, pose_of);
-      const Vector3 point = place_of(side, station, surface, shape, face, pose_of).point();
+      const StationPlace seen = place_of(side, station, surface, shape, face, pose_of);
+      const double radius = station.radius - seen.rise;
       const Matrix3 outwards = outwards_of(side, station, surface, pose_of);
-      const double start = start_inside(shape, {}, station.radius, point, outwards, face).start;
-      deepest = std::max(deepest, start > 0 ? start : station.radius - shape.gap(point));
+      const double start = start_inside(shape, {}, radius, seen.point(), outwards, face).start;
+      deepest = std::max(deepest, start > 0 ? start : radius - shape.gap(seen.point()));
     }
   return deepest;
 }

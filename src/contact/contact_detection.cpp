@@ -104,7 +104,8 @@ ContactElement::Passage ContactElement::passage(const ContactStation& station, c
   out.end = felt.shape.distance(to);
   out.begin_rate = let_out_rate(law_, felt.start) - out.begin.gradient.dot(motion.begin_velocity);
   const double end_start = let_out(law_, felt.start, step.duration);
-  out.change = {felt.radius - felt.start - out.begin.value, felt.radius - end_start - out.end.value, motion.duration};
+  out.change = {felt.radius - felt.start - out.begin.value + motion.begin_excess,
+                felt.radius - end_start - out.end.value + motion.end_excess, motion.duration};
   out.change.speed = approach_speed(out.change.begin, out.begin_rate, memory.speed);
   return out;
 }

@@ -17,6 +17,10 @@ template <int kColumns>
 using Rows3 =
     Eigen::Matrix<double, 3, kColumns, Eigen::ColMajor, 3, kColumns == Eigen::Dynamic ? kMostColumns : kColumns>;
 
+template <int kColumns>
+using Row =
+    Eigen::Matrix<double, 1, kColumns, Eigen::RowMajor, 1, kColumns == Eigen::Dynamic ? kMostColumns : kColumns>;
+
 std::vector<int> reach_of(const ContactStations& side, const ContactSurface& surface) {
   std::vector<int> nodes;
   if (side.nodes[0] >= 0) nodes = side.nodes;
@@ -140,6 +144,69 @@ ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const C
   return out;
 }
 
+/// A segment over a step. It touches at a point that is fixed to it over the step, near to the nearest ones of both
+/// ends. By how much these are nearer is the excess. (docs/notes/contact.md 1.2)
+struct ContactElement::Slide {
+  bool slides = false;     // false: the station is no segment
+  bool is_away = false;    // no contact is possible in this step
+  ContactStation station;  // that point
+  double begin_excess = 0, end_excess = 0;
+  Vector3 axis, begin_axis;  // of the segment at the end and at the beginning, in the shapes' frame
+  // Derivatives of the excess at the end, and of the place along the segment, with respect to the point's position and
+  // the segment's spin, in the frame of the shapes.
+  Eigen::RowVector3d by_seen = Eigen::RowVector3d::Zero(), by_spin = by_seen;
+  Eigen::RowVector3d along_by_seen = by_seen, along_by_spin = by_seen;
+};
+
+ContactElement::Slide ContactElement::slide(const ContactStation& station, const ContactShape& shape,
+                                            const ForceStep& step) const {
+  Slide out;
+  if (station.half == 0) return out;
+  out.slides = true;
+  out.station = station;
+  out.station.half = 0;
+  const Segment begin = segment_of(side_, station, surface_, poses_in(step.begin)),
+                end = segment_of(side_, station, surface_, poses_in(step.end));
+  const NearestOnSegment first = nearest_on(begin, station.radius, shape);
+  const double way = (end.middle - begin.middle).norm() + station.half * (end.axis - begin.axis).norm();
+  out.is_away = first.distance - station.radius > way;
+  if (out.is_away) return out;
+  const NearestOnSegment last = nearest_on(end, station.radius, shape);
+  const bool is_instant = step.at_end || step.duration == 0;
+  const double along = is_instant ? last.along : midway(station, shape, step);
+  out.station.arm += along * station.axis;
+  const SignedDistance felt = shape.distance(end.at(along)), nearest = shape.distance(end.at(last.along));
+  out.begin_excess = shape.distance(begin.at(along)).value - first.distance;
+  out.end_excess = felt.value - last.distance;
+  out.axis = end.axis, out.begin_axis = begin.axis;
+  const Eigen::RowVector3d turned = (end.axis.cross(nearest.gradient)).transpose();  // of nearest.gradient . axis
+  const double curvature = kBarrel * station.radius / (station.half * station.half);
+  if (!is_instant) {
+    out.by_seen = (felt.gradient - nearest.gradient).transpose();
+    out.by_spin = (along - last.along) * turned;
+  } else if (!last.is_end) {
+    const Eigen::RowVector3d bent = end.axis.transpose() * nearest.hessian;
+    const double rise = bent.dot(end.axis) + curvature;
+    out.along_by_seen = -bent / rise;
+    out.along_by_spin = -turned / rise;
+    // The excess is minus the rise of the surface there.
+    out.by_seen = -curvature * along * out.along_by_seen;
+    out.by_spin = -curvature * along * out.along_by_spin;
+  }
+  return out;
+}
+
+/// The place along a segment that is nearest in the middle of a step, by the velocities at its beginning [m].
+double ContactElement::midway(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const {
+  const auto begin_of = poses_in(step.begin);
+  Segment segment = segment_of(side_, station, surface_, begin_of);
+  const Vector3 end = velocity(station, begin_of, step.velocities, segment.axis),
+                middle = velocity(station, begin_of, step.velocities);
+  segment.middle += 0.5 * step.duration * middle;
+  segment.axis = (segment.axis + 0.5 * step.duration * (end - middle)).normalized();
+  return nearest_on(segment, station.radius, shape).along;
+}
+
 PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
                                       const ForceStep& step) const {
   const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
@@ -149,6 +216,7 @@ PointMotion ContactElement::motion_of(const ContactStation& station, const Conta
                      end = place_of(side_, station, surface_, shape, out.face, end_of);
   out.begin = begin.middle, out.begin_offset = begin.offset;
   out.end = end.middle, out.end_offset = end.offset;
+  out.begin_excess = -begin.rise, out.end_excess = -end.rise;
   if (step.duration != 0) out.begin_velocity = velocity(station, begin_of, step.velocities, begin.offset);
   out.outwards = outwards_of(side_, station, surface_, begin_of);
   return out;
@@ -165,20 +233,32 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   const Frames frames = this->frames(step);
   const double* memory = step.memory;
   double* new_memory = step.new_memory;
-  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
+  for_each_pair([&](const ContactStation& given, const ContactShape& shape) {
     const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
     // The gap is a lower bound of the distance to the surface, so no contact is possible in this step.
     if (is_new) {
-      const Vector3 begin = place(station, poses_in(step.begin)), end = place(station, poses_in(step.end));
-      if (shape.gap(begin) - station.reach() > (end - begin).norm()) {
+      const Vector3 begin = place(given, poses_in(step.begin)), end = place(given, poses_in(step.end));
+      if (shape.gap(begin) - given.reach() > (end - begin).norm()) {
         memory += PointMemory::kSize;
         new_memory += PointMemory::kSize;
         return true;
       }
     }
+    const Slide slide = this->slide(given, shape, step);
+    if (is_new && slide.is_away) {
+      memory += PointMemory::kSize;
+      new_memory += PointMemory::kSize;
+      return true;
+    }
+    const ContactStation& station = slide.slides ? slide.station : given;
     const Placed placed = this->placed(station, frames, step);
     const PointMemory old = memory_at(memory);
     PointMotion motion = motion_of(station, shape, old.face, step);
+    if (slide.slides) {
+      motion.begin_excess = slide.begin_excess;
+      motion.end_excess = slide.end_excess;
+      motion.lever = station.radius;
+    }
     motion.turn = frames.axes.transpose() * placed.turn;
     motion.duration = step.duration;
     motion.at_end = step.at_end;
@@ -193,11 +273,11 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     if (local.acts) add(station, frames, placed, tilt, local, action);
     if (!local.acts || action.tangent.size() == 0) return true;
     if (action.tangent.rows() == 12)
-      add_tangent<12>(station, frames, placed, tilt, local, action);
+      add_tangent<12>(station, frames, placed, tilt, slide, local, action);
     else if (action.tangent.rows() == 6)
-      add_tangent<6>(station, frames, placed, tilt, local, action);
+      add_tangent<6>(station, frames, placed, tilt, slide, local, action);
     else
-      add_tangent<Eigen::Dynamic>(station, frames, placed, tilt, local, action);
+      add_tangent<Eigen::Dynamic>(station, frames, placed, tilt, slide, local, action);
     return true;
   });
 }
@@ -209,8 +289,7 @@ double ContactElement::remembered_energy(const ForceStep& step) const {
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const PointMemory old = memory_at(memory);
     if (old.face != 0 || old.stretch != Vector3::Zero() || old.turned != Vector3::Zero())
-      energy += stored_energy(shape, law_of(station), station.radius,
-                              place(station, shape, old.face, poses_in(step.begin)).point(), old);
+      energy += stored_energy(station, shape, old, poses_in(step.begin));
     memory += PointMemory::kSize;
     return true;
   });
@@ -230,63 +309,103 @@ void ContactElement::add(const ContactStation& station, const Frames& frames, co
   if (surface_.node >= 0) action.residual.segment<6>(6 * count) += wrench;
 }
 
+/// Derivatives with respect to {displacement, spin} of all nodes.
+template <int kColumns>
+struct ContactElement::Rows {
+  Rows3<kColumns> way, turn;      // of the station's position at the end and its rotation, relative to the base
+  Rows3<kColumns> seen, turned;   // of both in the shapes' frame
+  Rows3<kColumns> spin;           // of the spin of the only node relative to the base
+  Row<kColumns> excess;           // see Slide
+  Rows3<kColumns> force, couple;  // on the station, world axes
+};
+
+template <int kColumns>
+void ContactElement::add_tilt(const Frames& frames, const Tilt& tilt, const PointAction& local,
+                              Rows<kColumns>& rows) const {
+  const Rows3<kColumns> offset = tilt.by_spin * (frames.base_end.rotation.transpose() * rows.spin);
+  rows.force += frames.axes * (local.by_offset.template topRows<3>() * offset);
+  rows.couple += frames.axes * (local.by_offset.template bottomRows<3>() * offset);
+  const Vector3 axis = tilt.axis.cross(tilt.normal);
+  const Eigen::RowVector3d push = -local.push_slope * local.normal.transpose();
+  rows.couple += tilt.lever.value * axis * (push * (rows.seen + offset)) +
+                 local.push * tilt.lever.slope * axis * (tilt.cosine_by_spin() * rows.spin);
+  const double scale = frames.weight * local.push * tilt.lever.value;
+  const int base = 6 * moving_nodes();
+  if (base > 0) rows.couple.template middleCols<3>(3) += scale * hat(tilt.normal) * hat(tilt.end_axis);
+  if (surface_.node >= 0) rows.couple.template middleCols<3>(base + 3) -= scale * hat(tilt.axis) * hat(tilt.end_normal);
+}
+
 template <int kColumns>
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
-                                 const Tilt& tilt, const PointAction& local, ForceAction& action) const {
+                                 const Tilt& tilt, const Slide& slide, const PointAction& local,
+                                 ForceAction& action) const {
   const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
-  // Derivatives with respect to {displacement, spin} of all nodes: of the station's position at the end (`way`) and its
-  // rotation (`turn`) relative to the base, and of both in the shapes' frame (`seen`, `turned`).
-  Rows3<kColumns> way = Rows3<kColumns>::Zero(3, base + 6 * has_base), turn = way;
+  Rows<kColumns> rows;
+  rows.way = Rows3<kColumns>::Zero(3, base + 6 * has_base);
+  rows.turn = rows.way;
   for (int i = 0; i < count; ++i) {
-    way.template middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
-    turn.template middleCols<3>(6 * i + 3) = station.weights[i] * cayley::inverse_tangent(frames.turns[i]);
+    rows.way.template middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
+    rows.turn.template middleCols<3>(6 * i + 3) = station.weights[i] * cayley::inverse_tangent(frames.turns[i]);
   }
-  if (is_body) way.template middleCols<3>(3) = -hat(placed.end_arm);
+  if (is_body) rows.way.template middleCols<3>(3) = -hat(placed.end_arm);
   if (has_base) {
-    way.template middleCols<3>(base).diagonal().setConstant(-1);
-    turn.template middleCols<3>(base + 3) = -cayley::inverse_tangent(frames.base_turn);
+    rows.way.template middleCols<3>(base).diagonal().setConstant(-1);
+    rows.turn.template middleCols<3>(base + 3) = -cayley::inverse_tangent(frames.base_turn);
   }
-  Rows3<kColumns> seen = end_axes.transpose() * way, turned = frames.axes.transpose() * turn;
+  rows.seen = end_axes.transpose() * rows.way;
+  rows.turned = frames.axes.transpose() * rows.turn;
   if (has_base) {
-    seen.template middleCols<3>(base + 3) = end_axes.transpose() * hat(placed.end_base_arm);
-    turned.template middleCols<3>(base + 3) += frames.weight * end_axes.transpose() * hat(placed.turn);
+    rows.seen.template middleCols<3>(base + 3) = end_axes.transpose() * hat(placed.end_base_arm);
+    rows.turned.template middleCols<3>(base + 3) += frames.weight * end_axes.transpose() * hat(placed.turn);
+  }
+  if (tilt.tilts || slide.slides) {
+    rows.spin = Rows3<kColumns>::Zero(3, base + 6 * has_base);
+    if (count > 0) rows.spin.template middleCols<3>(3).setIdentity();
+    if (has_base) rows.spin.template middleCols<3>(base + 3) = -Matrix3::Identity();
+  }
+  const bool moves = slide.slides && !slide.along_by_seen.isZero(0);
+  Rows3<kColumns> along;  // the point that touches moves along the segment by this, in an equilibrium
+  Row<kColumns> place;
+  if (slide.slides) {
+    const Rows3<kColumns> spin = end_axes.transpose() * rows.spin;
+    rows.excess = slide.by_seen * rows.seen + slide.by_spin * spin;
+    if (moves) {
+      place = slide.along_by_seen * rows.seen + slide.along_by_spin * spin;
+      rows.seen += slide.axis * place;
+      along = (end_axes * slide.axis) * place;
+      rows.way += along;
+    }
   }
   const Matrix6& slope = local.slope;
-  Rows3<kColumns> force = frames.axes * (slope.topLeftCorner<3, 3>() * seen + slope.topRightCorner<3, 3>() * turned);
-  Rows3<kColumns> couple =
-      frames.axes * (slope.bottomLeftCorner<3, 3>() * seen + slope.bottomRightCorner<3, 3>() * turned);
-  if (tilt.tilts) {
-    // Derivative of the spin of the rim relative to the shapes, world axes.
-    Rows3<kColumns> spin = Rows3<kColumns>::Zero(3, base + 6 * has_base);
-    if (count > 0) spin.template middleCols<3>(3).setIdentity();
-    if (has_base) spin.template middleCols<3>(base + 3) = -Matrix3::Identity();
-    const Rows3<kColumns> offset = tilt.by_spin * (end_axes.transpose() * spin);
-    force += frames.axes * (local.by_offset.template topRows<3>() * offset);
-    couple += frames.axes * (local.by_offset.template bottomRows<3>() * offset);
-    const Vector3 axis = tilt.axis.cross(tilt.normal);
-    const Eigen::RowVector3d push = -local.push_slope * local.normal.transpose();
-    couple += tilt.lever.value * axis * (push * (seen + offset)) +
-              local.push * tilt.lever.slope * axis * (tilt.cosine_by_spin() * spin);
-    const double scale = frames.weight * local.push * tilt.lever.value;
-    if (count > 0) couple.template middleCols<3>(3) += scale * hat(tilt.normal) * hat(tilt.end_axis);
-    if (has_base) couple.template middleCols<3>(base + 3) -= scale * hat(tilt.axis) * hat(tilt.end_normal);
+  rows.force = frames.axes * (slope.topLeftCorner<3, 3>() * rows.seen + slope.topRightCorner<3, 3>() * rows.turned);
+  rows.couple =
+      frames.axes * (slope.bottomLeftCorner<3, 3>() * rows.seen + slope.bottomRightCorner<3, 3>() * rows.turned);
+  if (tilt.tilts) add_tilt(frames, tilt, local, rows);
+  if (slide.slides) {
+    rows.force += frames.axes * local.by_excess.template head<3>() * rows.excess;
+    rows.couple += frames.axes * local.by_excess.template tail<3>() * rows.excess;
+    if (moves) {  // also at the beginning, from which friction counts
+      rows.force += frames.axes * (local.by_begin.template topRows<3>() * slide.begin_axis) * place;
+      rows.couple += frames.axes * (local.by_begin.template bottomRows<3>() * slide.begin_axis) * place;
+    }
   }
   if (has_base) {
-    force.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
-    couple.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
+    rows.force.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
+    rows.couple.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
   }
   const Matrix3 pressed = frames.weight * hat(Vector3(frames.axes * local.wrench.head<3>()));
-  Rows3<kColumns> moment = hat(placed.arm) * force + couple;
+  Rows3<kColumns> moment = hat(placed.arm) * rows.force + rows.couple;
   if (is_body) moment.template middleCols<3>(3) += pressed * hat(placed.end_arm);
+  if (moves) moment -= pressed * along;
   for (int i = 0; i < count; ++i) {
-    action.tangent.middleRows<3>(6 * i) -= station.weights[i] * force;
+    action.tangent.middleRows<3>(6 * i) -= station.weights[i] * rows.force;
     action.tangent.middleRows<3>(6 * i + 3) -= station.weights[i] * moment;
   }
   if (!has_base) return;
-  action.tangent.middleRows<3>(base) += force;
-  action.tangent.middleRows<3>(base + 3) += hat(placed.base_arm) * force - pressed * way + couple;
+  action.tangent.middleRows<3>(base) += rows.force;
+  action.tangent.middleRows<3>(base + 3) += hat(placed.base_arm) * rows.force - pressed * rows.way + rows.couple;
 }
 
 }  // namespace flexarm

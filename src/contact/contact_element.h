@@ -5,6 +5,7 @@
 #include <array>
 
 #include "contact/point_contact.h"
+#include "contact/segment.h"
 #include "model/force_element.h"
 
 namespace flexarm {
@@ -15,7 +16,8 @@ constexpr double kMoreWay = 2, kNear = 0.02;
 /// If the cosine between the normals at both ends of a step is below this, the point has passed through something thin.
 constexpr double kOtherSide = -0.5;
 
-/// A contact point of a body or of a beam element: a ball (radius 0 for a corner), or the lowest point of a body's rim.
+/// A contact point of a body or of a beam element: a ball (radius 0 for a corner), the lowest point of a body's rim, or
+/// a ball at the nearest point of a body's segment.
 /// On a body its middle is fixed to the node. On a beam it is on the line: the sum of the nodes' positions times
 /// `weights`.
 struct ContactStation {
@@ -25,11 +27,12 @@ struct ContactStation {
   double radius = 0;                   ///< of the ball [m]
   double share = 1;                    ///< factor of the law's stiffnesses
   double rim = 0;                      ///< > 0: radius of a rim, which touches flat shapes only [m]
-  Vector3 axis = Vector3::UnitZ();     ///< of the rim, in the frame of the only node
+  double half = 0;                     ///< > 0: half the length of a segment [m]
+  Vector3 axis = Vector3::UnitZ();     ///< of the rim or segment, in the frame of the only node
   Matrix3 outwards = Matrix3::Zero();  ///< for a corner, see ContactPoint, in the frame of the only node
 
   /// Returns the largest distance of a point that may touch from the middle [m].
-  double reach() const { return radius + rim; }
+  double reach() const { return radius + rim + half; }
 };
 
 /// The stations of a body, or of a beam element.
@@ -78,6 +81,7 @@ Matrix3 outwards_of(const ContactStations& side, const ContactStation& station, 
 struct StationPlace {
   Vector3 middle, offset = Vector3::Zero();  ///< in the frame of the shapes' node [m]
   int face = 0;                              ///< see face_of()
+  double rise = 0;                           ///< of a segment, see NearestOnSegment [m]
 
   Vector3 point() const { return middle + offset; }
 };
@@ -87,6 +91,13 @@ Rim rim_of(const ContactStations& side, const ContactStation& station, const Con
            const PoseOf& pose_of) {
   return {seen_from(surface, middle_of(side, station, pose_of), pose_of),
           pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.axis, station.rim};
+}
+/// Returns a segment in the frame of a surface's node.
+template <class PoseOf>
+Segment segment_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
+                   const PoseOf& pose_of) {
+  const Rim rim = rim_of(side, station, surface, pose_of);
+  return {rim.middle, rim.axis, station.half};
 }
 /// Returns the only face by which a station may enter: the one below a rim, or `remembered`, if this is not 0; of other
 /// stations 0 (any).
@@ -100,6 +111,11 @@ int face_of(const ContactStations& side, const ContactStation& station, const Co
 template <class PoseOf>
 StationPlace place_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
                       const ContactShape& shape, int face, const PoseOf& pose_of) {
+  if (station.half > 0) {
+    const Segment segment = segment_of(side, station, surface, pose_of);
+    const NearestOnSegment nearest = nearest_on(segment, station.radius, shape);
+    return {segment.middle, nearest.along * segment.axis, 0, nearest.rise};
+  }
   if (station.rim == 0) return {seen_from(surface, middle_of(side, station, pose_of), pose_of)};
   const Rim rim = rim_of(side, station, surface, pose_of);
   return {rim.middle, lowest_point(rim, face_normal(shape, face)), face};
@@ -177,6 +193,12 @@ class ContactElement : public ForceElement {
     return place_of(side_, station, surface_, shape, face_of(side_, station, surface_, shape, remembered, pose_of),
                     pose_of);
   }
+  template <class PoseOf>
+  double stored_energy(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
+                       const PoseOf& pose_of) const {
+    const StationPlace seen = place(station, shape, memory.face, pose_of);
+    return flexarm::stored_energy(shape, law_of(station), station.radius - seen.rise, seen.point(), memory);
+  }
   /// Returns the velocity of a station's middle, or of the point at an offset from there, relative to the shapes. Both
   /// vectors are in the shapes' frame [m/s, m].
   template <class PoseOf>
@@ -203,16 +225,23 @@ class ContactElement : public ForceElement {
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
+  struct Slide;
+  /// Where a segment touches over a step.
+  Slide slide(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const;
+  double midway(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const;
   struct Tilt;
   /// How a rim is tilted against the face that it may touch.
   Tilt tilt(const ContactStation& station, const ContactShape& shape, const PointMotion& motion, const Frames& frames,
             const ForceStep& step) const;
   void add(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
            const PointAction& local, ForceAction& action) const;
-  /// `kColumns`: six for each moving node, or Eigen::Dynamic.
+  template <int kColumns>
+  struct Rows;
+  template <int kColumns>
+  void add_tilt(const Frames& frames, const Tilt& tilt, const PointAction& local, Rows<kColumns>& rows) const;
   template <int kColumns>
   void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
-                   const PointAction& local, ForceAction& action) const;
+                   const Slide& slide, const PointAction& local, ForceAction& action) const;
   /// A ball that contains all stations.
   struct Bounds {
     Vector3 middle;  // in the frame of the shapes [m]

@@ -20,7 +20,8 @@ void ContactElement::start(const State& state, const double*, double* memory) co
   const auto pose_of = poses_in(state);
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const int face = face_of(side_, station, surface_, shape, 0, pose_of);
-    put(start_inside(shape, law_, station.radius, place(station, shape, face, pose_of).point(),
+    const StationPlace seen = place(station, shape, face, pose_of);
+    put(start_inside(shape, law_, station.radius - seen.rise, seen.point(),
                      outwards_of(side_, station, surface_, pose_of), face),
         memory);
     memory += PointMemory::kSize;
@@ -31,9 +32,7 @@ void ContactElement::start(const State& state, const double*, double* memory) co
 double ContactElement::energy(const State& state, const double* memory) const {
   double energy = 0;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const ContactLaw law = law_of(station);
-    const PointMemory old = memory_at(memory);
-    energy += stored_energy(shape, law, station.radius, place(station, shape, old.face, poses_in(state)).point(), old);
+    energy += stored_energy(station, shape, memory_at(memory), poses_in(state));
     memory += PointMemory::kSize;
     return true;
   });
@@ -50,16 +49,17 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
     PointMemory old = memory_at(memory);
     memory += PointMemory::kSize;
     const StationPlace place = this->place(station, shape, old.face, pose_of);
+    const double radius = station.radius - place.rise;
     if (place.face != 0) {
       if (!is_over_face(shape, place.face, place.point())) return true;
       old.face = place.face;
     }
     if (old.face == 0) {
-      const double gap = shape.distance(place.point()).value - station.radius;
+      const double gap = shape.distance(place.point()).value - radius;
       least = std::min(least, gap);
       if (gap >= 0) return true;
     }
-    const PointTouch local = point_touch(shape, law_of(station), station.radius, place.point(),
+    const PointTouch local = point_touch(shape, law_of(station), radius, place.point(),
                                          velocity(station, pose_of, motion.velocities, place.offset), old);
     least = std::min(least, local.gap);
     if (local.gap >= 0) return true;
@@ -86,7 +86,7 @@ void ContactElement::for_each_touching(const State& state, const double* memory,
     memory += PointMemory::kSize;
     const bool by_face = place.face != 0 && is_over_face(shape, place.face, place.point());
     const SignedDistance distance = (by_face ? beyond_face(shape, place.face) : shape).distance(place.point());
-    if (distance.value < station.radius) visit(station, place, distance);
+    if (distance.value < station.radius - place.rise) visit(station, place, distance);
     return true;
   });
 }
@@ -130,7 +130,7 @@ ForceMeasures ContactElement::measures(const State& state, const double* memory,
           ++row;
         };
         const Vector3 offset = base.rotation * seen.offset;
-        add(normal, offset, contact_push(law, {0, station.radius - distance.value, 0}).slope);
+        add(normal, offset, contact_push(law, {0, station.radius - seen.rise - distance.value, 0}).slope);
         // Friction acts at the surface, which is below the station's middle by the radius.
         const Vector3 below = offset - station.radius * normal;
         if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
@@ -145,9 +145,9 @@ DamperTensions ContactElement::dampers(const State& state, const double* memory,
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
   for_each_touching(
-      state, memory, [&](const ContactStation& station, const StationPlace&, const SignedDistance& distance) {
+      state, memory, [&](const ContactStation& station, const StationPlace& seen, const SignedDistance& distance) {
         // The damping for slow motions, see contact_push().
-        const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
+        const double slope = hardened({station.radius - seen.rise - distance.value, law_.depth}).slope;
         slopes[row] = 2 * law_of(station).stiffness * law_.restitution.damping_of_slow_hits() / law_.frequency * slope;
         row += each;
       });

@@ -18,11 +18,12 @@ constexpr double kLow = 0.2;
 /// Normal force and normal, which friction and resistance to turning depend on, with their derivatives.
 struct Pushed {
   double push;
-  Vector3 normal;       ///< unit vector
-  Matrix3 by_end;       ///< derivative of the normal with respect to the point at the end
-  Vector3 push_by_end;  ///< derivative of the push with respect to the point at the end
-  double root;          ///< see grip_root()
-  Vector3 root_by_end;  ///< its derivative with respect to the point at the end
+  Vector3 normal;                 ///< unit vector
+  Matrix3 by_end;                 ///< derivative of the normal with respect to the point at the end
+  Vector3 push_by_end;            ///< derivative of the push with respect to the point at the end
+  double root;                    ///< see grip_root()
+  Vector3 root_by_end;            ///< its derivative with respect to the point at the end
+  double push_slope, root_slope;  ///< derivatives of both with respect to the penetration at the end
 };
 Pushed pushed(const GapChange& gap, const ContactPush& push, const GripRoot& root) {
   const double length = gap.gradient.norm();
@@ -32,13 +33,20 @@ Pushed pushed(const GapChange& gap, const ContactPush& push, const GripRoot& roo
           (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length,
           -push.slope * gap.end_gradient,
           root.value,
-          -root.slope * gap.end_gradient};
+          -root.slope * gap.end_gradient,
+          push.slope,
+          root.slope};
 }
 
 /// Derivative of a grip's pull with respect to the point at the end, but for that by the slip.
 Matrix3 pull_by_end(const ContactGrip& grip, const Pushed& pushed) {
   return grip.by_normal * pushed.by_end + grip.by_push * pushed.push_by_end.transpose() +
          grip.by_root * pushed.root_by_end.transpose();
+}
+
+/// Derivative of a grip's pull with respect to the penetration at the end.
+Vector3 pull_by_penetration(const ContactGrip& grip, const Pushed& pushed) {
+  return grip.by_push * pushed.push_slope + grip.by_root * pushed.root_slope;
 }
 
 /// Adds friction, which acts at the surface of the ball, or at the lowest point of a rim.
@@ -51,7 +59,7 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.memory.stretch = grip.stretch;
   action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
   action.wrench.head<3>() += drag;
-  action.wrench.tail<3>() = offset.cross(drag);
+  action.wrench.tail<3>() += offset.cross(drag);
   if (!with_slope) return;
   // The point at the end moves the normal, and by it this offset. The offset of a rim moves it and the point.
   const Matrix3 by_end = -radius * pushed.by_end, turning = hat(motion.turn);
@@ -61,11 +69,16 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
       -grip.by_slip * hat(offset);
   drag_slope *= -law.grip;
   action.slope.topRows<3>() += drag_slope;
-  action.slope.bottomRows<3>() = hat(offset) * drag_slope;
+  action.slope.bottomRows<3>() += hat(offset) * drag_slope;
   action.slope.bottomLeftCorner<3, 3>() -= hat(drag) * by_end;
   const Matrix3 drag_by_offset = -law.grip * (grip.by_slip * turning * by_offset + pull_by_end(grip, pushed));
   action.by_offset.topRows<3>() += drag_by_offset;
-  action.by_offset.bottomRows<3>() = hat(offset) * drag_by_offset - hat(drag) * by_offset;
+  action.by_offset.bottomRows<3>() += hat(offset) * drag_by_offset - hat(drag) * by_offset;
+  action.by_begin.topRows<3>() = law.grip * grip.by_slip;
+  action.by_begin.bottomRows<3>() = hat(offset) * action.by_begin.topRows<3>();
+  const Vector3 drag_by_excess = -law.grip * pull_by_penetration(grip, pushed);
+  action.by_excess.head<3>() += drag_by_excess;
+  action.by_excess.tail<3>() += offset.cross(drag_by_excess);
 }
 
 /// Adds the resistance to rotation relative to the surface.
@@ -80,6 +93,31 @@ void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushe
   action.slope.bottomLeftCorner<3, 3>() -= law.turn_grip * pull_by_end(grip, pushed);
   action.by_offset.bottomRows<3>() -= law.turn_grip * pull_by_end(grip, pushed);
   action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
+  action.by_excess.tail<3>() -= law.turn_grip * pull_by_penetration(grip, pushed);
+}
+
+/// Adds the normal force. The change of the excess of a segment, which the point itself does not have, does its work by
+/// a wrench in proportion to the motion. (docs/notes/contact.md 1.2)
+void add_push(const GapChange& gap, const ContactPush& push, const PointMotion& motion, bool with_slope,
+              PointAction& action) {
+  Vector6 way;  // rotations count by the lever
+  way << motion.end - motion.begin, motion.lever * motion.lever * motion.turn;
+  const double square = way.head<3>().squaredNorm() + way.tail<3>().dot(motion.turn);
+  const bool corrects = motion.lever > 0 && !motion.at_end && square > kShort * kShort * motion.lever * motion.lever;
+  const double part = corrects ? (motion.begin_excess - motion.end_excess) / square : 0;
+  Vector6 gradient = part * way;
+  gradient.head<3>() += gap.gradient;
+  action.wrench += push.value * gradient;
+  if (!with_slope) return;
+  action.slope.leftCols<3>() -= push.slope * gradient * gap.end_gradient.transpose();
+  action.slope.topLeftCorner<3, 3>() += push.value * gap.slope;
+  action.by_offset = action.slope.leftCols<3>();
+  action.by_excess += push.slope * gradient;
+  if (!corrects) return;
+  action.by_excess -= push.value / square * way;
+  action.slope -= 2 * push.value * part / square * way * way.transpose();
+  action.slope.topLeftCorner<3, 3>().diagonal().array() += push.value * part;
+  action.slope.bottomRightCorner<3, 3>().diagonal().array() += push.value * part * motion.lever * motion.lever;
 }
 
 /// Energy that is stored by sticking [J].
@@ -194,7 +232,9 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   // Energy stored at the beginning; what is stored at the end is subtracted below.
   out.dissipated = felt.let_go + held_energy(law, memory);
   if (!felt.is_felt) return out;
-  const GapChange gap = gap_change(shape, motion.begin_point(), motion.end_point(), motion.at_end);
+  GapChange gap = gap_change(shape, motion.begin_point(), motion.end_point(), motion.at_end);
+  gap.begin -= motion.begin_excess;
+  gap.end -= motion.end_excess;
   const double end_start = let_out(law, felt.start, motion.duration);
   ContactChange change{felt.radius - felt.start - gap.begin, felt.radius - end_start - gap.end,
                        motion.at_end ? 0.0 : motion.duration};
@@ -225,11 +265,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   out.normal = gap.end_gradient;
   out.push = push.value;
   out.push_slope = push.slope;
-  if (with_slope) {
-    out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
-    out.by_offset.topRows<3>() = out.slope.topLeftCorner<3, 3>();
-  }
-  out.wrench.head<3>() = push.value * gap.gradient;
+  add_push(gap, push, motion, with_slope, out);
   if (gap.gradient.isZero(0)) return out;
   if (!(law.friction > 0) && !law.resists_turns()) return out;
   const GripRoot root = grip_root(law, change.end, change.speed, motion.duration);

@@ -22,6 +22,9 @@ GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vecto
 struct PointMotion {
   Vector3 begin, end;                                                    ///< positions of the middle [m]
   Vector3 begin_offset = Vector3::Zero(), end_offset = Vector3::Zero();  ///< [m]
+  /// Of a segment the point is fixed over a step, and the nearest one is nearer than this by an excess. Its change is
+  /// spread over displacements and, by `lever`, over rotations. [m]
+  double begin_excess = 0, end_excess = 0, lever = 0;
   int face = 0;                              ///< the only one by which the point may enter; 0: any
   Vector3 turn;                              ///< rotation of the ball minus that of the body, tangent-scaled, mean axes
   Vector3 begin_velocity = Vector3::Zero();  ///< of the ball's middle, or of the point, at the beginning [m/s]
@@ -51,6 +54,8 @@ struct PointAction {
   Vector6 wrench = Vector6::Zero();
   Matrix6 slope = Matrix6::Zero();  ///< derivative with respect to {end, turn} of PointMotion
   Eigen::Matrix<double, 6, 3> by_offset = Eigen::Matrix<double, 6, 3>::Zero();  ///< to PointMotion::end_offset
+  Eigen::Matrix<double, 6, 3> by_begin = Eigen::Matrix<double, 6, 3>::Zero();   ///< to begin, of friction
+  Vector6 by_excess = Vector6::Zero();                                          ///< to PointMotion::end_excess
   Vector3 normal = Vector3::Zero();                                             ///< gradient of the gap at the end
   double push = 0, push_slope = 0;  ///< normal force [N], and its derivative with respect to the penetration at the end
   PointMemory memory;               ///< at the end of the step

@@ -191,6 +191,11 @@ std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bo
   if (end <= 0) return out;
   const int spans = std::max(1, static_cast<int>(std::min(std::ceil(2 * end / spacing), kMostEdgePoints + 1.0)));
   for (int i = 0; i <= spans; ++i) out.push_back({{0, 0, end * (2.0 * i / spans - 1)}, cylinder.radius});
+  // Where something crosses the side, the nearest point of the axis carries it alone.
+  ContactPoint axis{Vector3::Zero(), cylinder.radius};
+  axis.share = kRimPoints;
+  axis.half = end;
+  out.push_back(axis);
   return out;
 }
 

@@ -89,7 +89,8 @@ struct ContactPoint {
   Matrix3 outwards = Matrix3::Zero();  ///< columns: normals of the faces that meet there, in the node's frame
   double share = 1;                    ///< of the stiffness of a point
   double rim = 0;                      ///< > 0: the radius of a rim, of which the lowest point touches [m]
-  Vector3 axis = Vector3::UnitZ();     ///< of the rim, in the node's frame
+  double half = 0;                     ///< > 0: half the length of a segment, of which the nearest point touches [m]
+  Vector3 axis = Vector3::UnitZ();     ///< of the rim or segment, in the node's frame
 };
 /// Returns the contact points of a shape. A ball: itself. A box or hull: its corners, and points on its edges about
 /// `spacing` apart [m], at most kMostEdgePoints on each. A cylinder: kRimPoints on each rim; if it is longer than wide,

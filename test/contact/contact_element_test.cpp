@@ -32,8 +32,8 @@ struct Scene {
   ContactSurface surface;
 };
 
-/// Scenes of a ball and a corner, or a rim, on node 0, and of an element with nodes 0, 2, 3, against shapes on node 1
-/// or on the world.
+/// Scenes of a ball and a corner, a rim, or a rod on node 0, and of an element with nodes 0, 2, 3, against shapes on
+/// node 1 or on the world.
 std::vector<Scene> scenes() {
   const Pose place{{0.05, -0.02, 0.03}, so3::exp_quaternion(Vector3(0.2, 0.1, -0.3))};
   const std::vector<ContactShape> shapes = {{HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
@@ -44,7 +44,7 @@ std::vector<Scene> scenes() {
                                             {Cylinder{0.3, std::numeric_limits<double>::infinity()}, place, true},
                                             {Hull{std::make_shared<Polytope>(roof_polytope({0.4, 0.5, 0.2}, 0.1))},
                                              {place.position + Vector3(0.1, 0, 0), place.orientation}}};
-  ContactStation ball, corner, tube, rim;
+  ContactStation ball, corner, tube, rim, rod, leaning;
   ball.arm = {0.1, 0.05, -0.1};
   ball.radius = 0.2;
   corner.arm = {0.05, 0.1, -0.24};
@@ -54,12 +54,25 @@ std::vector<Scene> scenes() {
   rim.arm = {0.05, 0.02, -0.05};
   rim.rim = 0.25;
   rim.axis = Vector3(1, 0.3, 0.5).normalized();
+  rod.arm = {0.05, 0.02, -0.05};
+  rod.radius = 0.15;
+  rod.half = 0.6;
+  rod.axis = Vector3(1, 0.5, -0.1).normalized();
+  leaning.arm = {0.5, 0, 0.14};
+  leaning.radius = 0.3;
+  leaning.half = 0.6;
+  leaning.axis = Vector3(1, 0.3, -1).normalized();
   std::vector<Scene> out;
   const char* names[] = {"half-space", "ball", "box", "cylinder", "socket", "bearing", "hull"};
   for (std::size_t k = 0; k < shapes.size(); ++k)
     for (const int base : {1, -1}) {
       out.push_back({names[k], {{0}, {ball, corner}}, {base, {shapes[k]}}});
       out.push_back({names[k], {{0, 2, 3}, {tube}}, {base, {shapes[k]}}});
+      if (!shapes[k].is_hollow && k > 0) {  // the axis of a rod stays outside
+        ContactStation over = k == 1 ? rod : leaning;
+        if (k == 6) over.arm += Vector3(0.1, 0, 0.1);
+        out.push_back({names[k], {{0}, {over}}, {base, {shapes[k]}}});
+      }
       if (is_flat(shapes[k])) out.push_back({names[k], {{0}, {rim}}, {base, {shapes[k]}}});
     }
   return out;
@@ -317,7 +330,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
     for (const ContactStation& station : scene.side.stations)
       for (const double penetration : {1e-9, 0.1}) {
         const auto& [name, side, surface] = alone(scene, station, end, penetration);
-        if (side.stations[0].radius <= 0 || station.rim > 0) continue;
+        if (side.stations[0].radius <= 0 || station.rim > 0 || station.half > 0) continue;
         const ContactLaw law = gripping_law(0.5, 0.5);
         const ContactElement element({"", ""}, side, surface, law);
         const std::vector<double> memory(element.memory_size());
