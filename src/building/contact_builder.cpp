@@ -317,8 +317,10 @@ class ContactBuilder {
     if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
     require_no_turn_grip(contact);
     const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge enters and leaves the tube
-    join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size, false),
-                   law_of(contact, body, tube, at_a_time), placed_);
+    std::vector<ContactStations> points = stations_of(body, tube.size, false);
+    std::transform(points.begin(), points.end(), points.begin(), without_segments);
+    join_with_line(model_, plan_, links_of(contact, body, tube), points, law_of(contact, body, tube, at_a_time),
+                   placed_);
     return is_small_ball;
   }
 
@@ -330,15 +332,18 @@ class ContactBuilder {
       ContactStations body{{surface.node}, {}, 0};
       for (const ContactShape& shape : surface.shapes) {
         const std::vector<ContactPoint> points = contact_points(shape, spacing, on_flat);
-        body.at_a_time += points_at_a_time(shape, points);
+        const int at_a_time = points_at_a_time(shape, points);
+        body.at_a_time += at_a_time;
         for (const ContactPoint& point : points) {
           ContactStation station;
           station.arm = point.arm;
           station.radius = point.radius;
           station.outwards = point.outwards;
-          station.share = point.share;
+          // One of two bodies' segments touches alone where these cross.
+          station.share = point.half > 0 ? 0.5 * at_a_time : point.share;
           station.rim = point.rim;
           station.half = point.half;
+          station.curvature = point.curvature;
           station.axis = point.axis;
           body.stations.push_back(station);
         }
@@ -364,14 +369,18 @@ class ContactBuilder {
           "along their lines");
   }
 
-  /// Leaves out segments where only half-spaces are touched, which a cylinder touches with its rims.
-  static ContactStations for_shapes(ContactStations stations, const ContactSurface& surface) {
-    const auto is_plane = [](const ContactShape& shape) { return std::holds_alternative<HalfSpace>(shape.kind); };
+  static ContactStations without_segments(ContactStations stations) {
     auto& all = stations.stations;
-    if (std::all_of(surface.shapes.begin(), surface.shapes.end(), is_plane))
-      all.erase(std::remove_if(all.begin(), all.end(), [](const ContactStation& each) { return each.half > 0; }),
-                all.end());
+    all.erase(std::remove_if(all.begin(), all.end(), [](const ContactStation& each) { return each.half > 0; }),
+              all.end());
     return stations;
+  }
+
+  /// Leaves out segments where only half-spaces are touched: rims and corners are nearer.
+  static ContactStations for_shapes(const ContactStations& stations, const ContactSurface& surface) {
+    const auto is_plane = [](const ContactShape& shape) { return std::holds_alternative<HalfSpace>(shape.kind); };
+    const bool all_planes = std::all_of(surface.shapes.begin(), surface.shapes.end(), is_plane);
+    return all_planes ? without_segments(stations) : stations;
   }
 
   static bool has_rims(const Side& side) {

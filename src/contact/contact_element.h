@@ -27,7 +27,7 @@ struct ContactStation {
   double radius = 0;                   ///< of the ball [m]
   double share = 1;                    ///< factor of the law's stiffnesses
   double rim = 0;                      ///< > 0: radius of a rim, which touches flat shapes only [m]
-  double half = 0;                     ///< > 0: half the length of a segment [m]
+  double half = 0, curvature = 0;      ///< > 0: half the length of a segment [m], and its curvature [1/m]
   Vector3 axis = Vector3::UnitZ();     ///< of the rim or segment, in the frame of the only node
   Matrix3 outwards = Matrix3::Zero();  ///< for a corner, see ContactPoint, in the frame of the only node
 
@@ -97,7 +97,7 @@ template <class PoseOf>
 Segment segment_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
                    const PoseOf& pose_of) {
   const Rim rim = rim_of(side, station, surface, pose_of);
-  return {rim.middle, rim.axis, station.half};
+  return {rim.middle, rim.axis, station.half, station.curvature};
 }
 /// Returns the only face by which a station may enter: the one below a rim, or `remembered`, if this is not 0; of other
 /// stations 0 (any).
@@ -113,7 +113,7 @@ StationPlace place_of(const ContactStations& side, const ContactStation& station
                       const ContactShape& shape, int face, const PoseOf& pose_of) {
   if (station.half > 0) {
     const Segment segment = segment_of(side, station, surface, pose_of);
-    const NearestOnSegment nearest = nearest_on(segment, station.radius, shape);
+    const NearestOnSegment nearest = nearest_on(segment, shape);
     return {segment.middle, nearest.along * segment.axis, 0, nearest.rise};
   }
   if (station.rim == 0) return {seen_from(surface, middle_of(side, station, pose_of), pose_of)};
@@ -237,6 +237,10 @@ class ContactElement : public ForceElement {
            const PointAction& local, ForceAction& action) const;
   template <int kColumns>
   struct Rows;
+  template <int kColumns>
+  Rows<kColumns> rows_of(const ContactStation& station, const Frames& frames, const Placed& placed) const;
+  template <int kColumns>
+  void add_slide(const Frames& frames, const Slide& slide, const PointAction& local, Rows<kColumns>& rows) const;
   template <int kColumns>
   void add_tilt(const Frames& frames, const Tilt& tilt, const PointAction& local, Rows<kColumns>& rows) const;
   template <int kColumns>

@@ -4,8 +4,8 @@
 
 namespace flexarm {
 
-NearestOnSegment nearest_on(const Segment& segment, double radius, const ContactShape& shape) {
-  const double curvature = kBarrel * radius / (segment.half * segment.half);
+NearestOnSegment nearest_on(const Segment& segment, const ContactShape& shape) {
+  const double curvature = segment.curvature;
   const auto slope_at = [&](double along) {
     return shape.distance(segment.at(along)).gradient.dot(segment.axis) + curvature * along;
   };

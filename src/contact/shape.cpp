@@ -116,11 +116,20 @@ double gap_of(const Hull& hull, const Vector3& y) {
   return highest_face(hull, y).height;
 }
 
-/// Appends contact points between both ends of an edge.
-void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, const Matrix3& outwards,
+/// Appends contact points between both ends of an edge. If these are too far apart for the spacing, also a segment: the
+/// axis of a cylinder that nearly touches both faces from the inside. `radius`: of this cylinder [m].
+void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, const Matrix3& outwards, double radius,
                      std::vector<ContactPoint>& points) {
-  const int spans = static_cast<int>(std::min(std::ceil((end - begin).norm() / spacing), kMostEdgePoints + 1.0));
+  const double length = (end - begin).norm();
+  const int spans = static_cast<int>(std::min(std::ceil(length / spacing), kMostEdgePoints + 1.0));
   for (int i = 1; i < spans; ++i) points.push_back({begin + (end - begin) * i / spans, 0, outwards});
+  if (length <= spacing * (kMostEdgePoints + 1) || !(radius > 0)) return;
+  const Vector3 out = outwards.rowwise().sum();  // of two unit normals; its square is 2 (1 + cosine)
+  ContactPoint segment{0.5 * (begin + end) - 2 * (1 + kSunkEdge) * radius / out.squaredNorm() * out, radius};
+  segment.half = 0.5 * length;
+  segment.curvature = kBentEdge * radius / (segment.half * segment.half);
+  segment.axis = (end - begin) / length;
+  points.push_back(segment);
 }
 
 std::vector<ContactPoint> points_of(const HalfSpace&, double, bool) {
@@ -139,7 +148,8 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing, bool) {
       if (k & (1 << axis)) continue;  // each edge is added at its lower end
       Matrix3 beside = outwards;
       beside.col(axis).setZero();
-      add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, beside, out);
+      add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, beside,
+                      kRoundEdge * box.half.minCoeff(), out);
     }
   }
   return out;
@@ -167,8 +177,9 @@ std::vector<ContactPoint> points_of(const Hull& hull, double spacing, bool) {
     }
   std::vector<ContactPoint> out;
   for (std::size_t i = 0; i < corners.size(); ++i) out.push_back({corners[i], 0, outwards_of(at_corners[i])});
+  const double radius = kRoundEdge * inner_radius(*hull.polytope);
   for (const auto& [edge, normals] : at_edges)
-    add_edge_points(corners[edge.first], corners[edge.second], spacing, outwards_of(normals), out);
+    add_edge_points(corners[edge.first], corners[edge.second], spacing, outwards_of(normals), radius, out);
   return out;
 }
 std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bool on_flat) {
@@ -193,8 +204,9 @@ std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bo
   for (int i = 0; i <= spans; ++i) out.push_back({{0, 0, end * (2.0 * i / spans - 1)}, cylinder.radius});
   // Where something crosses the side, the nearest point of the axis carries it alone.
   ContactPoint axis{Vector3::Zero(), cylinder.radius};
-  axis.share = kRimPoints;
+
   axis.half = end;
+  axis.curvature = kBarrel * cylinder.radius / (end * end);
   out.push_back(axis);
   return out;
 }

@@ -90,16 +90,23 @@ struct ContactPoint {
   double share = 1;                    ///< of the stiffness of a point
   double rim = 0;                      ///< > 0: the radius of a rim, of which the lowest point touches [m]
   double half = 0;                     ///< > 0: half the length of a segment, of which the nearest point touches [m]
+  double curvature = 0;                ///< of the surface along the segment [1/m]
   Vector3 axis = Vector3::UnitZ();     ///< of the rim or segment, in the node's frame
 };
 /// Returns the contact points of a shape. A ball: itself. A box or hull: its corners, and points on its edges about
-/// `spacing` apart [m], at most kMostEdgePoints on each. A cylinder: kRimPoints on each rim; if it is longer than wide,
-/// also balls along its axis that fill it. A half-space or a hole: none. `on_flat`: they touch flat faces only. Then a
-/// cylinder has its rims, and the points carry only a face that lies flat: they are drawn in by kDrawnIn of the radius.
-/// They have that part of the stiffness with which the face resists spinning as under a uniform pressure.
+/// `spacing` apart [m], at most kMostEdgePoints on each; on longer edges also a segment, rounded by kRoundEdge of the
+/// smallest half width. A cylinder: kRimPoints on each rim; if it is longer than wide,
+/// also balls along its axis that fill it, and a segment. A half-space or a hole: none. `on_flat`: they touch flat
+/// faces only. Then a cylinder has its rims, and the points carry only a face that lies flat: they are drawn in by
+/// kDrawnIn of the radius. They have that part of the stiffness with which the face resists spinning as under a uniform
+/// pressure.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing, bool on_flat);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
-constexpr double kDrawnIn = 0.01;
+constexpr double kDrawnIn = 0.01, kRoundEdge = 0.1;
+/// The sides of cylinders, and edges, are lower at their ends than in the middle by half of this part of their radius.
+constexpr double kBarrel = 1e-3, kBentEdge = 0.5;
+/// So that a segment does not touch where faces lie on each other, it is sunk by this, relative to its radius.
+constexpr double kSunkEdge = 0.2;
 /// Returns how many of these points touch a plane on which the shape lies: the largest number on one flat face; 1 if
 /// the shape has no faces.
 int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points);

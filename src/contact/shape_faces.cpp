@@ -210,7 +210,7 @@ int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>&
     for (int face = 0; face < face_count(each); ++face) {
       if (is_round(shape, face + 1)) continue;
       const auto lies_on = [&](const ContactPoint& point) {
-        return point.rim == 0 &&
+        return point.rim == 0 && point.half == 0 &&
                std::abs(height_over(each, face, own_point(shape, point.arm)) + point.radius) < kFlush * size_of(each);
       };
       most = std::max(most, std::count_if(points.begin(), points.end(), lies_on));

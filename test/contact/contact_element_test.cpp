@@ -57,6 +57,7 @@ std::vector<Scene> scenes() {
   rod.arm = {0.05, 0.02, -0.05};
   rod.radius = 0.15;
   rod.half = 0.6;
+  rod.curvature = leaning.curvature = 0.01;
   rod.axis = Vector3(1, 0.5, -0.1).normalized();
   leaning.arm = {0.5, 0, 0.14};
   leaning.radius = 0.3;

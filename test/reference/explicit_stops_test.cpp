@@ -7,17 +7,17 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kLimit = 0.5, kMass = 2, kSpeed = 1.3, kContactTime = 0.2;
+constexpr double kLimit = 0.5, kSlidingMass = 2, kHitSpeed = 1.3, kContactTime = 0.2;
 
 /// A mass on a rail between stops.
 SceneBuilder carriage() {
   SceneBuilder b;
-  b.body("block", kMass, Vector3::Zero(), Matrix3::Identity());
+  b.body("block", kSlidingMass, Vector3::Zero(), Matrix3::Identity());
   b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX()).limits =
       scene::JointLimits{-kLimit, kLimit};
   b.scene.gravity.setZero();
   b.scene.contact_time = kContactTime;
-  b.scene.initial_joints.push_back({"rail", 0, kSpeed, {}, true});
+  b.scene.initial_joints.push_back({"rail", 0, kHitSpeed, {}, true});
   return b;
 }
 
@@ -57,8 +57,8 @@ Hit hit(double v) {
 
 /// Position and velocity of the mass after its first two hits.
 Eigen::Vector2d carriage_at(double time) {
-  const Hit first = hit(kSpeed), second = hit(first.speed);
-  const double release = kLimit / kSpeed + first.duration;
+  const Hit first = hit(kHitSpeed), second = hit(first.speed);
+  const double release = kLimit / kHitSpeed + first.duration;
   const double touch = release + (2 * kLimit + first.depth) / first.speed, left = touch + second.duration;
   EXPECT_GT(time, left);
   return {-kLimit - second.depth + second.speed * (time - left), second.speed};
@@ -89,7 +89,7 @@ TEST_P(ExplicitStops, HitsKeepTheOrder) {
 
 // The energy that dampers and releases take is in the account, with the error of the method.
 TEST_P(ExplicitStops, LoseWhatTheAccountSays) {
-  const double begin = 0.5 * kMass * kSpeed * kSpeed, round_off = 1e-11;
+  const double begin = 0.5 * kSlidingMass * kHitSpeed * kHitSpeed, round_off = 1e-11;
   double defects[2];
   for (const int k : {0, 1}) {
     const Simulation s = after(4, 500 << k);

@@ -1,0 +1,90 @@
+// Which points of rims and segments touch over a step. (docs/notes/contact.md 1.2)
+#include "contact/contact_step.h"
+
+namespace flexarm {
+
+PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
+                                      const ForceStep& step) const {
+  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
+  PointMotion out;
+  out.face = face_of(side_, station, surface_, shape, remembered, begin_of);
+  const StationPlace begin = place_of(side_, station, surface_, shape, out.face, begin_of),
+                     end = place_of(side_, station, surface_, shape, out.face, end_of);
+  out.begin = begin.middle, out.begin_offset = begin.offset;
+  out.end = end.middle, out.end_offset = end.offset;
+  out.begin_excess = -begin.rise, out.end_excess = -end.rise;
+  if (step.duration != 0) out.begin_velocity = velocity(station, begin_of, step.velocities, begin.offset);
+  out.outwards = outwards_of(side_, station, surface_, begin_of);
+  return out;
+}
+
+ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const ContactShape& shape,
+                                          const PointMotion& motion, const Frames& frames,
+                                          const ForceStep& step) const {
+  Tilt out;
+  if (station.rim == 0) return out;
+  out.tilts = true;
+  const Vector3 normal = face_normal(shape, motion.face);
+  const Vector3 begin_axis = poses_in(step.begin)(side_.nodes[0]).rotation * station.axis;
+  out.end_axis = poses_in(step.end)(side_.nodes[0]).rotation * station.axis;
+  out.end_normal = frames.base_end.rotation * normal;
+  out.axis = frames.weight * out.end_axis + (1 - frames.weight) * begin_axis;
+  out.normal = frames.axes * normal;
+  const double end = out.end_axis.dot(out.end_normal);
+  out.lever = rim_lever(station.rim, step.at_end ? end : begin_axis.dot(frames.base_begin.rotation * normal), end);
+  if (step.at_end) out.lever.slope *= 2;  // the lever is symmetric in both cosines
+  out.by_spin =
+      lowest_point_by_spin({motion.end, frames.base_end.rotation.transpose() * out.end_axis, station.rim}, normal);
+  return out;
+}
+
+ContactElement::Slide ContactElement::slide(const ContactStation& station, const ContactShape& shape,
+                                            const ForceStep& step) const {
+  Slide out;
+  if (station.half == 0) return out;
+  out.slides = true;
+  out.station = station;
+  out.station.half = 0;
+  const Segment begin = segment_of(side_, station, surface_, poses_in(step.begin)),
+                end = segment_of(side_, station, surface_, poses_in(step.end));
+  const NearestOnSegment first = nearest_on(begin, shape);
+  const double way = (end.middle - begin.middle).norm() + station.half * (end.axis - begin.axis).norm();
+  out.is_away = first.distance - station.radius > way;
+  if (out.is_away) return out;
+  const NearestOnSegment last = nearest_on(end, shape);
+  const bool is_instant = step.at_end || step.duration == 0;
+  const double along = is_instant ? last.along : midway(station, shape, step);
+  out.station.arm += along * station.axis;
+  const SignedDistance felt = shape.distance(end.at(along)), nearest = shape.distance(end.at(last.along));
+  out.begin_excess = shape.distance(begin.at(along)).value - first.distance;
+  out.end_excess = felt.value - last.distance;
+  out.axis = end.axis, out.begin_axis = begin.axis;
+  const Eigen::RowVector3d turned = (end.axis.cross(nearest.gradient)).transpose();  // of nearest.gradient . axis
+  const double curvature = station.curvature;
+  if (!is_instant) {
+    out.by_seen = (felt.gradient - nearest.gradient).transpose();
+    out.by_spin = (along - last.along) * turned;
+  } else if (!last.is_end) {
+    const Eigen::RowVector3d bent = end.axis.transpose() * nearest.hessian;
+    const double rise = bent.dot(end.axis) + curvature;
+    out.along_by_seen = -bent / rise;
+    out.along_by_spin = -turned / rise;
+    // The excess is minus the rise of the surface there.
+    out.by_seen = -curvature * along * out.along_by_seen;
+    out.by_spin = -curvature * along * out.along_by_spin;
+  }
+  return out;
+}
+
+/// The place along a segment that is nearest in the middle of a step, by the velocities at its beginning [m].
+double ContactElement::midway(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const {
+  const auto begin_of = poses_in(step.begin);
+  Segment segment = segment_of(side_, station, surface_, begin_of);
+  const Vector3 end = velocity(station, begin_of, step.velocities, segment.axis),
+                middle = velocity(station, begin_of, step.velocities);
+  segment.middle += 0.5 * step.duration * middle;
+  segment.axis = (segment.axis + 0.5 * step.duration * (end - middle)).normalized();
+  return nearest_on(segment, shape).along;
+}
+
+}  // namespace flexarm
