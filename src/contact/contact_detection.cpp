@@ -26,6 +26,11 @@ ContactElement::Bounds ContactElement::bounds(const PoseOf& pose_of) const {
   return {seen_from(surface_, middle, pose_of), spread_ * apart + own_radius_};
 }
 
+double ContactElement::turning_speed(const ForceStart& start) const {
+  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : start.velocities[node]; };
+  return (motion_of(side_.nodes[0]) - motion_of(surface_.node)).tail<3>().norm();
+}
+
 double ContactElement::highest_speed(const ForceStart& start) const {
   const auto pose_of = poses_in(start.poses);
   const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : start.velocities[node]; };
@@ -42,21 +47,23 @@ double ContactElement::highest_speed(const ForceStart& start) const {
   }
   // Stations of a beam are on its line, so rotations of nodes do not move them.
   if (side_.nodes.size() > 1) return spread_ * speed;
-  return speed + (motion_of(side_.nodes[0]) - base).tail<3>().norm() * own_radius_;
+  return speed + turning_speed(start) * own_radius_;
 }
 
 int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   std::copy(reach().begin(), reach().end(), nodes);
   const int all = static_cast<int>(reach().size());
   if (start.duration == 0) return all;
-  const double duration = std::abs(start.duration), close = kNear * size_;
+  const auto pose_of = poses_in(start.poses);
+  const double duration = std::abs(start.duration), close = kNear * size_, turning = turning_speed(start);
   const Bounds bounds = this->bounds(poses_in(start.poses));
   const double most = kMoreWay * duration * highest_speed(start) + close + bounds.radius;
   for (const ContactShape& shape : surface_.shapes) {
     if (shape.gap(bounds.middle) >= most) continue;
     for (const ContactStation& station : side_.stations) {
-      const double gap = shape.gap(place(station, poses_in(start.poses))) - station.reach();
-      const double way = duration * velocity(station, poses_in(start.poses), start.velocities).norm();
+      const double gap = least_gap(station, shape, pose_of);
+      double way = duration * velocity(station, pose_of, start.velocities).norm();
+      if (station.half > 0) way += duration * turning * station.half;
       if (gap < kMoreWay * way + close) return all;
     }
   }
@@ -84,9 +91,7 @@ void ContactElement::for_each_passage(const ForceStep& step, const Visit& visit)
     if (shape.gap(begin.middle) > most) continue;
     const double* memory = step.memory + PointMemory::kSize * k;
     for (const ContactStation& station : side_.stations) {
-      const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
-      const bool is_far = shape.gap(from) - station.reach() > (to - from).norm();
-      if (!is_far && !visit(passage(station, shape, memory_at(memory), step), shape)) return;
+      if (may_touch(station, shape, step) && !visit(passage(station, shape, memory_at(memory), step), shape)) return;
       memory += PointMemory::kSize * shapes;
     }
   }

@@ -95,17 +95,10 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   double* new_memory = step.new_memory;
   for_each_pair([&](const ContactStation& given, const ContactShape& shape) {
     const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
-    // The gap is a lower bound of the distance to the surface, so no contact is possible in this step.
-    if (is_new) {
-      const Vector3 begin = place(given, poses_in(step.begin)), end = place(given, poses_in(step.end));
-      if (shape.gap(begin) - given.reach() > (end - begin).norm()) {
-        memory += PointMemory::kSize;
-        new_memory += PointMemory::kSize;
-        return true;
-      }
-    }
-    const Slide slide = this->slide(given, shape, step);
-    if (is_new && slide.is_away) {
+
+    const bool is_far = is_new && !may_touch(given, shape, step);
+    const Slide slide = is_far ? Slide() : this->slide(given, shape, step);
+    if (is_far || (is_new && slide.is_away)) {
       memory += PointMemory::kSize;
       new_memory += PointMemory::kSize;
       return true;

@@ -2,6 +2,7 @@
 /// The force element of contact between the contact points of a body, or of a beam element, and the shapes of another
 /// body.
 
+#include <algorithm>
 #include <array>
 
 #include "contact/point_contact.h"
@@ -225,6 +226,11 @@ class ContactElement : public ForceElement {
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
+  /// Returns a lower bound of the distance of a station's surface from a shape [m].
+  template <class PoseOf>
+  double least_gap(const ContactStation& station, const ContactShape& shape, const PoseOf& pose_of) const;
+  /// Whether a station and a shape may touch in a step, by the motion between its ends.
+  bool may_touch(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const;
   struct Slide;
   /// Where a segment touches over a step.
   Slide slide(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const;
@@ -255,6 +261,8 @@ class ContactElement : public ForceElement {
   Bounds bounds(const PoseOf& pose_of) const;
   /// Returns a bound of the stations' speeds relative to the shapes, at the beginning of a step [m/s].
   double highest_speed(const ForceStart& start) const;
+  /// Returns the rate of rotation of a body with stations relative to the shapes [rad/s].
+  double turning_speed(const ForceStart& start) const;
   /// Calls visit(station, shape) for all pairs in the order of the memory, until it returns false.
   template <class Visit>
   void for_each_pair(const Visit& visit) const {
@@ -276,6 +284,16 @@ class ContactElement : public ForceElement {
   /// The stations are in a ball of the radius own_radius_ + spread_ * (largest distance of a node from the mean) [m].
   double own_radius_ = 0, spread_ = 1;
 };
+
+template <class PoseOf>
+double ContactElement::least_gap(const ContactStation& station, const ContactShape& shape,
+                                 const PoseOf& pose_of) const {
+  if (station.half == 0) return shape.gap(place(station, pose_of)) - station.reach();
+  const Segment segment = segment_of(side_, station, surface_, pose_of);
+  const Vector3 way = shape.place.position - segment.middle;
+  const double along = std::clamp(way.dot(segment.axis), -segment.half, segment.half);
+  return (way - along * segment.axis).norm() - bounding_radius(shape) - station.radius;
+}
 
 template <class PoseOf>
 Vector3 ContactElement::velocity(const ContactStation& station, const PoseOf& pose_of,

@@ -3,6 +3,16 @@
 
 namespace flexarm {
 
+bool ContactElement::may_touch(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const {
+  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
+  double way = (place(station, end_of) - place(station, begin_of)).norm();
+  if (station.half > 0)
+    way += station.half *
+           (segment_of(side_, station, surface_, end_of).axis - segment_of(side_, station, surface_, begin_of).axis)
+               .norm();
+  return least_gap(station, shape, begin_of) <= way;
+}
+
 PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
                                       const ForceStep& step) const {
   const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);

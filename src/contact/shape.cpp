@@ -241,6 +241,19 @@ double half_width(const ContactShape& shape) {
   return std::numeric_limits<double>::infinity();
 }
 
+double bounding_radius(const ContactShape& shape) {
+  if (const auto* ball = std::get_if<Ball>(&shape.kind)) return ball->radius;
+  if (const auto* box = std::get_if<Box>(&shape.kind)) return box->half.norm();
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
+    return std::hypot(cylinder->radius, cylinder->half_length);
+  if (const auto* hull = std::get_if<Hull>(&shape.kind)) {
+    double square = 0;
+    for (const Vector3& corner : hull->polytope->corners) square = std::max(square, corner.squaredNorm());
+    return std::sqrt(square);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing, bool on_flat) {
   if (shape.is_hollow) return {};
   std::vector<ContactPoint> out =

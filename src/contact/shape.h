@@ -79,6 +79,8 @@ Vector3 face_normal(const ContactShape& shape, int face);
 /// Whether the shape has flat faces only, or is a half-space.
 bool is_flat(const ContactShape& shape);
 
+/// Returns the radius of a ball about the shape's origin that contains the shape [m]; infinity for a half-space.
+double bounding_radius(const ContactShape& shape);
 /// Returns half of the shape's smallest width [m]; infinity for a half-space.
 double half_width(const ContactShape& shape);
 

@@ -39,7 +39,8 @@ double speed_after(double restitution, double at) {
   return (1 + restitution) / (1 + 12 / (kBarLength * kBarLength) * at * at) - 1;
 }
 
-// The hit of boxes with each other may act anywhere on the square in which they touch.
+// The hit of boxes with each other may act anywhere on the square in which they touch. Several points that hit at a time
+// give back up to 2 % more or less (docs/notes/contact.md 2).
 TEST(ContactOfEdges, BarsThatCrossHitEachOther) {
   constexpr double kRestitution = 0.5;
   for (const double at : {0.0, 0.0625, 0.21, 0.4})
@@ -52,8 +53,8 @@ TEST(ContactOfEdges, BarsThatCrossHitEachOther) {
         const double square = bars.shape.find("box") == std::string::npos ? 0 : bars.thick / 2;
         const double nearer = speed_after(kRestitution, std::max(0.0, at - square)),
                      farther = speed_after(kRestitution, at + square), speed = simulation.momentum().z() / kBarMass;
-        EXPECT_GT(speed, farther - 0.01 * (1 + kRestitution)) << bars.shape << at << " " << y;
-        EXPECT_LT(speed, nearer + 0.01 * (1 + kRestitution)) << bars.shape << at << " " << y;
+        EXPECT_GT(speed, farther - 0.02 * (1 + kRestitution)) << bars.shape << at << " " << y;
+        EXPECT_LT(speed, nearer + 0.02 * (1 + kRestitution)) << bars.shape << at << " " << y;
         const Energies energies = simulation.energies();
         EXPECT_NEAR(energies.total() + energies.dissipated, 0.5 * kBarMass, 1e-9) << bars.shape << at << " " << y;
       }
