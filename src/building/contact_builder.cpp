@@ -21,6 +21,8 @@ namespace {
 
 /// Depth beyond which a contact gives way no further, relative to sizes.
 constexpr double kContactDepth = 0.1;
+/// A shape that is smaller than this, relative to the mechanism, is a point. It may penetrate by more than its size.
+constexpr double kPoint = 1e-4;
 /// Radius of gyration of a ball, relative to its radius.
 constexpr double kTurnedLever = 0.63;
 /// Most intervals between the stations along an element.
@@ -119,7 +121,8 @@ class ContactBuilder {
     auto surface = std::find_if(side.surfaces.begin(), side.surfaces.end(), on_node);
     if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
     surface->shapes.push_back(shape);
-    if (const double size = half_width(shape); size > 0) side.size = std::min(side.size, size);  // or it is a point
+    if (const double size = half_width(shape); size > kPoint * model_.length_scale)
+      side.size = std::min(side.size, size);
     if (node >= 0) side.mass = mass_of_body(model_, node);
   }
 

@@ -70,6 +70,21 @@ TEST(ContactOfBodies, BodyStandsOnPoints) {
   EXPECT_LT(simulation.momentum().norm(), 1e-9);
 }
 
+// A cylinder of a micrometre at the end of a heavy body is a point. With its own size as the depth of the contact, its
+// hits would be shorter than what numbers of metres resolve.
+TEST(ContactOfBodies, TinyShapeOnAHeavyBodyKeepsTheAccount) {
+  for (const char* shape : {"<cylinder radius='1e-6' length='1e-6'/>", "<sphere radius='1e-6'/>"}) {
+    Simulation simulation =
+        simulation_of(body("body", 70, {6, 30, 35}, Vector3::Zero(), collision(shape, {-0.4, 0, -0.16})) +
+                          floating("body") + kFloor + contact_of("body", "floor", "friction='0.6'"),
+                      start("body", {0, 0, 0.18}, Vector3::Zero()), 1e-3);
+    const double begin = energy_account(simulation);
+    run_until(simulation, 0.5);
+    EXPECT_NEAR(energy_account(simulation), begin, 1e-10 * begin) << shape;
+    EXPECT_GT(simulation.link_pose(1).position.z(), -1) << "it turns about the point: " << shape;
+  }
+}
+
 // A ball lies in a wedge, whose walls push with m g / (2 cos a) each.
 TEST(ContactOfBodies, BallComesToRestInAWedge) {
   constexpr double kMass = 1, kRadius = 0.05, kStiffness = 1e5, kSlope = 0.6;
