@@ -46,8 +46,11 @@ std::vector<ContactShape> shapes_of(const scene::VisualDescription& collision, c
                                     const scene::LinkDescription& link) {
   const Pose place = frame * collision.origin;
   if (const auto* box = std::get_if<scene::BoxShape>(&collision.shape)) return {{Box{0.5 * box->size}, place}};
-  if (const auto* cylinder = std::get_if<scene::CylinderShape>(&collision.shape))
-    return {{Cylinder{cylinder->radius, 0.5 * cylinder->length}, place}};
+  if (const auto* cylinder = std::get_if<scene::CylinderShape>(&collision.shape)) {
+    const double half_length = 0.5 * cylinder->length;
+    if (cylinder->inner_radius > 0) return {{Tube{cylinder->radius, cylinder->inner_radius, half_length}, place}};
+    return {{Cylinder{cylinder->radius, half_length}, place}};
+  }
   if (const auto* sphere = std::get_if<scene::SphereShape>(&collision.shape)) return {{Ball{sphere->radius}, place}};
   const auto& mesh = std::get<scene::MeshShape>(collision.shape);
   std::vector<ContactShape> out;
@@ -379,15 +382,22 @@ class ContactBuilder {
     return stations;
   }
 
-  /// Leaves out segments where only half-spaces are touched: rims and corners are nearer.
+  /// Leaves out segments where only half-spaces are touched, since rims and corners are nearer, and where a tube is,
+  /// which
+  /// is not convex.
   static ContactStations for_shapes(const ContactStations& stations, const ContactSurface& surface) {
     const auto is_plane = [](const ContactShape& shape) { return std::holds_alternative<HalfSpace>(shape.kind); };
-    const bool all_planes = std::all_of(surface.shapes.begin(), surface.shapes.end(), is_plane);
-    return all_planes ? without_segments(stations) : stations;
+    const auto is_tube = [](const ContactShape& shape) { return std::holds_alternative<Tube>(shape.kind); };
+    const std::vector<ContactShape>& shapes = surface.shapes;
+    const bool needs_none =
+        std::all_of(shapes.begin(), shapes.end(), is_plane) || std::any_of(shapes.begin(), shapes.end(), is_tube);
+    return needs_none ? without_segments(stations) : stations;
   }
 
   static bool has_rims(const Side& side) {
-    const auto is_rim = [](const ContactShape& shape) { return std::holds_alternative<Cylinder>(shape.kind); };
+    const auto is_rim = [](const ContactShape& shape) {
+      return std::holds_alternative<Cylinder>(shape.kind) || std::holds_alternative<Tube>(shape.kind);
+    };
     return std::any_of(side.surfaces.begin(), side.surfaces.end(), [&](const ContactSurface& each) {
       return std::any_of(each.shapes.begin(), each.shapes.end(), is_rim);
     });

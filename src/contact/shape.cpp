@@ -54,19 +54,33 @@ SignedDistance distance_of(const Box& box, const Vector3& y) {
   return corner(y.cwiseAbs() - box.half, signs.asDiagonal());
 }
 
-SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
-  const SignedDistance radial = norm({y.x(), y.y(), 0}, Vector3::UnitX());
+/// The signed distance from a body of revolution about z, whose section is a rectangle. `radial`: the distance from the
+/// axis; `beside`: the same from the middle of the section; `half`, `half_length`: half of its width and height [m].
+SignedDistance about_axis(const SignedDistance& radial, double beside, double half, double half_length,
+                          const Vector3& y) {
+  const Vector3 outwards = (beside < 0 ? -1 : 1) * radial.gradient;
   Matrix3 axes;
-  axes << radial.gradient, Vector3::UnitZ().cross(radial.gradient), Vector3(0, 0, y.z() < 0 ? -1 : 1);
-  const double face = radial.value - cylinder.radius;
+  axes << outwards, Vector3::UnitZ().cross(radial.gradient), Vector3(0, 0, y.z() < 0 ? -1 : 1);
   SignedDistance out =
-      corner({face, -std::numeric_limits<double>::infinity(), std::abs(y.z()) - cylinder.half_length}, axes);
+      corner({std::abs(beside) - half, -std::numeric_limits<double>::infinity(), std::abs(y.z()) - half_length}, axes);
   // The radial direction rotates as the point moves.
   const double radial_part = out.gradient.dot(radial.gradient);
   Matrix3 in_section = radial.hessian;
   in_section.row(2).setZero(), in_section.col(2).setZero();
   out.hessian += radial_part * in_section;
   return out;
+}
+
+SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
+  const SignedDistance radial = norm({y.x(), y.y(), 0}, Vector3::UnitX());
+  return about_axis(radial, radial.value, cylinder.radius, cylinder.half_length, y);
+}
+
+/// In a plane with the axis, a tube's wall is a rectangle.
+SignedDistance distance_of(const Tube& tube, const Vector3& y) {
+  const SignedDistance radial = norm({y.x(), y.y(), 0}, Vector3::UnitX());
+  const double middle = 0.5 * (tube.radius + tube.inner_radius), half = 0.5 * (tube.radius - tube.inner_radius);
+  return about_axis(radial, radial.value - middle, half, tube.half_length, y);
 }
 
 /// The face with the largest signed distance from a point, and this distance [m].
@@ -111,6 +125,10 @@ double gap_of(const Box& box, const Vector3& y) {
 }
 double gap_of(const Cylinder& cylinder, const Vector3& y) {
   return corner_gap(Eigen::Vector2d(y.head<2>().norm() - cylinder.radius, std::abs(y.z()) - cylinder.half_length));
+}
+double gap_of(const Tube& tube, const Vector3& y) {
+  const double middle = 0.5 * (tube.radius + tube.inner_radius), half = 0.5 * (tube.radius - tube.inner_radius);
+  return corner_gap(Eigen::Vector2d(std::abs(y.head<2>().norm() - middle) - half, std::abs(y.z()) - tube.half_length));
 }
 double gap_of(const Hull& hull, const Vector3& y) {
   return highest_face(hull, y).height;
@@ -182,21 +200,33 @@ std::vector<ContactPoint> points_of(const Hull& hull, double spacing, bool) {
     add_edge_points(corners[edge.first], corners[edge.second], spacing, outwards_of(normals), radius, out);
   return out;
 }
-std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bool on_flat) {
-  std::vector<ContactPoint> out;
-  // Under a uniform pressure, two thirds of the radius are the mean arm of what resists spinning.
-  const double inner = on_flat ? 1 - kDrawnIn : 1, share = on_flat ? 2 / (3 * inner) : 1;
-  for (const double z : {-cylinder.half_length, cylinder.half_length}) {
-    for (int k = 0; k < kRimPoints; ++k) {
-      const double angle = 2 * kPi * k / kRimPoints;
-      const Vector3 radial(std::cos(angle), std::sin(angle), 0);
-      Matrix3 outwards = Matrix3::Zero();
-      outwards.col(0) = radial;
-      outwards(2, 2) = z < 0 ? -1 : 1;
-      out.push_back({inner * cylinder.radius * radial + Vector3(0, 0, z), 0, outwards, share});
-    }
-    if (on_flat) out.push_back({{0, 0, z}, 0, Matrix3::Zero(), (1 - share) * kRimPoints, cylinder.radius});
+/// Appends points on a circle about z. `side`: 1 for an outer rim, -1 for an inner one.
+void add_circle(double radius, double z, double side, double share, std::vector<ContactPoint>& points) {
+  for (int k = 0; k < kRimPoints; ++k) {
+    const double angle = 2 * kPi * k / kRimPoints;
+    const Vector3 radial(std::cos(angle), std::sin(angle), 0);
+    Matrix3 outwards = Matrix3::Zero();
+    outwards.col(0) = side * radial;
+    outwards(2, 2) = z < 0 ? -1 : 1;
+    points.push_back({radius * radial + Vector3(0, 0, z), 0, outwards, share});
   }
+}
+/// Returns the points of a tube, or with an inner radius of 0 those of both faces of a cylinder.
+std::vector<ContactPoint> points_of(const Tube& tube, double, bool on_flat) {
+  const double r = tube.radius, bore = tube.inner_radius;
+  // The mean arm of what resists spinning under a uniform pressure.
+  const double arm = 2.0 / 3 * (r * r + r * bore + bore * bore) / (r + bore), inner = (1 - kDrawnIn) * r;
+  const double share = arm / std::max(inner, arm);
+  std::vector<ContactPoint> out;
+  for (const double z : {-tube.half_length, tube.half_length}) {
+    add_circle(on_flat ? inner : r, z, 1, on_flat ? share : 1, out);
+    if (on_flat) out.push_back({{0, 0, z}, 0, Matrix3::Zero(), std::max(1 - share, 0.3) * kRimPoints, r});
+    if (!on_flat && bore > 0) add_circle(bore, z, -1, 1, out);
+  }
+  return out;
+}
+std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing, bool on_flat) {
+  std::vector<ContactPoint> out = points_of(Tube{cylinder.radius, 0, cylinder.half_length}, spacing, on_flat);
   // For the side: balls along the axis with the cylinder's radius.
   const double end = cylinder.half_length - cylinder.radius;
   if (end <= 0) return out;
@@ -238,6 +268,8 @@ double half_width(const ContactShape& shape) {
   if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
     return std::min(cylinder->radius, cylinder->half_length);
   if (const auto* hull = std::get_if<Hull>(&shape.kind)) return inner_radius(*hull->polytope);
+  if (const auto* tube = std::get_if<Tube>(&shape.kind))
+    return std::min(0.5 * (tube->radius - tube->inner_radius), tube->half_length);
   return std::numeric_limits<double>::infinity();
 }
 
@@ -246,6 +278,7 @@ double bounding_radius(const ContactShape& shape) {
   if (const auto* box = std::get_if<Box>(&shape.kind)) return box->half.norm();
   if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
     return std::hypot(cylinder->radius, cylinder->half_length);
+  if (const auto* tube = std::get_if<Tube>(&shape.kind)) return std::hypot(tube->radius, tube->half_length);
   if (const auto* hull = std::get_if<Hull>(&shape.kind)) {
     double square = 0;
     for (const Vector3& corner : hull->polytope->corners) square = std::max(square, corner.squaredNorm());

@@ -33,6 +33,11 @@ struct Cylinder {
   double radius = 0, half_length = 0;  ///< [m]
 };
 
+/// A tube with its axis along z.
+struct Tube {
+  double radius = 0, inner_radius = 0, half_length = 0;  ///< [m]
+};
+
 /// The convex hull of a mesh.
 struct Hull {
   std::shared_ptr<const Polytope> polytope;
@@ -40,7 +45,7 @@ struct Hull {
 
 /// A shape fixed to a node, or to the world.
 struct ContactShape {
-  std::variant<HalfSpace, Ball, Box, Cylinder, Hull> kind;
+  std::variant<HalfSpace, Ball, Box, Cylinder, Hull, Tube> kind;
   Pose place;              ///< in the node's frame
   bool is_hollow = false;  ///< inverted: the shape is a hole, and everything around it is solid; has no faces
 
@@ -98,10 +103,11 @@ struct ContactPoint {
 /// Returns the contact points of a shape. A ball: itself. A box or hull: its corners, and points on its edges about
 /// `spacing` apart [m], at most kMostEdgePoints on each; on longer edges also a segment, rounded by kRoundEdge of the
 /// smallest half width. A cylinder: kRimPoints on each rim; if it is longer than wide,
-/// also balls along its axis that fill it, and a segment. A half-space or a hole: none. `on_flat`: they touch flat
-/// faces only. Then a cylinder has its rims, and the points carry only a face that lies flat: they are drawn in by
-/// kDrawnIn of the radius. They have that part of the stiffness with which the face resists spinning as under a uniform
-/// pressure.
+/// also balls along its axis that fill it, and a segment. A tube: as a cylinder, but
+/// nothing along its axis, and points on the inner rims for round shapes. A half-space or a hole: none. `on_flat`: they
+/// touch flat faces only. Then a cylinder has its rims, and the points carry only a face that lies flat: they are drawn
+/// in by kDrawnIn of the radius. They have that part of the stiffness with which the face resists spinning as under a
+/// uniform pressure.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing, bool on_flat);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
 constexpr double kDrawnIn = 0.01, kRoundEdge = 0.1;

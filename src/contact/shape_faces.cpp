@@ -205,6 +205,7 @@ ContactShape beyond_face(const ContactShape& shape, int face) {
 }
 
 int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points) {
+  if (std::holds_alternative<Tube>(shape.kind)) return kRimPoints;
   return of_faces(shape, 1, [&](const auto& each) {
     std::ptrdiff_t most = 1;
     for (int face = 0; face < face_count(each); ++face) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "scene/readers.h"
 #include "scene/standard_attributes.h"
 #include "scene/standard_reader.h"
@@ -36,6 +38,17 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
                       rotation * inertia * rotation.transpose(), (rotary ? *rotary : inertial).location()};
 }
 
+/// Reads the inner radius of a tube; 0: a solid cylinder [m].
+double read_bore(const XmlElement& collision, double radius) {
+  const std::optional<XmlElement> geometry = collision.child("geometry");
+  const std::optional<XmlElement> cylinder = geometry ? geometry->child("cylinder") : std::nullopt;
+  if (!cylinder || !cylinder->has("inner_radius")) return 0;
+  const double inner = cylinder->number("inner_radius", kNonNegative, 0);
+  if (inner < radius) return inner;
+  cylinder->attribute_error("inner_radius", fmt::format("inner_radius must be less than the radius, {:g}", radius));
+  return 0;
+}
+
 }  // namespace
 
 void judge_material(const XmlElement& material) {
@@ -57,9 +70,11 @@ LinkDescription read_link(const XmlElement& unnamed) {
     const bool is_good = judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
     const bool is_collision = child.tag() == "collision";
     if (!is_good) continue;
-    if (const std::optional<VisualDescription> shape = shape_of_urdfdom(child.xml()))
+    if (std::optional<VisualDescription> shape = shape_of_urdfdom(child.xml())) {
+      if (auto* cylinder = std::get_if<CylinderShape>(&shape->shape); cylinder && is_collision)
+        cylinder->inner_radius = read_bore(child, cylinder->radius);
       (is_collision ? description.collisions : description.visuals).push_back(*shape);
-    else if (!is_collision && link.child("beam"))  // rviz draws those of rigid links itself
+    } else if (!is_collision && link.child("beam"))  // rviz draws those of rigid links itself
       child.warning("is not shown: its shape must have an extent, of finite numbers");
   }
   return description;

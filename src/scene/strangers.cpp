@@ -79,7 +79,7 @@ constexpr Words kWords[] = {
     {"parent", "link", ""},
     {"child", "link", ""},
     {"box", "size", ""},
-    {"cylinder", "radius length", ""},
+    {"cylinder", "radius length inner_radius", ""},
     {"sphere", "radius", ""},
     {"mesh", "filename scale", ""},
     {"color", "rgba", ""},

@@ -275,7 +275,10 @@ class SceneParts {
     add_given("contact_time", contact_time);
   }
   void add(const scene::BoxShape& box) { all("size", box.size); }
-  void add(const scene::CylinderShape& cylinder) { all("radius", cylinder.radius, "length", cylinder.length); }
+  void add(const scene::CylinderShape& cylinder) {
+    all("radius", cylinder.radius, "length", cylinder.length);
+    if (cylinder.inner_radius > 0) all("inner_radius", cylinder.inner_radius);
+  }
   void add(const scene::SphereShape& sphere) { all("radius", sphere.radius); }
   void add(const scene::MeshShape& mesh) { all("url", mesh.url, "scale", mesh.scale); }
   void add(const scene::VisualDescription& shape) { all("origin", shape.origin, "shape", shape.shape); }

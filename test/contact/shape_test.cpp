@@ -24,6 +24,7 @@ std::vector<Named> all_shapes() {
           {"ball", {Ball{0.4}, kPlace}},
           {"box", {Box{{0.3, 0.5, 0.2}}, kPlace}},
           {"cylinder", {Cylinder{0.3, 0.5}, kPlace}},
+          {"tube", {Tube{0.6, 0.35, 0.5}, kPlace}},
           {"socket", {Ball{0.4}, kPlace, true}},
           {"bearing", {Cylinder{0.3, std::numeric_limits<double>::infinity()}, kPlace, true}},
           {"hull", {Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.4, 0.2}, 0.15))}, kPlace}}};
@@ -92,7 +93,8 @@ TEST(ContactShapes, TouchAPlaneByThePointsOfAFace) {
 TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
   const Box box{{0.3, 0.5, 0.2}};
   const Cylinder cylinder{0.3, 0.5};
-  const ContactShape shapes[] = {{box, Pose()}, {cylinder, Pose()}};
+  const Tube tube{0.6, 0.35, 0.5};
+  const ContactShape shapes[] = {{box, Pose()}, {cylinder, Pose()}, {tube, Pose()}};
   constexpr int kCount = 120;
   for (const ContactShape& shape : shapes) {
     std::vector<Vector3> surface;
@@ -105,9 +107,13 @@ TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
             surface.push_back(box.half.cwiseProduct(Vector3(u, side, v)));
             surface.push_back(box.half.cwiseProduct(Vector3(u, v, side)));
           } else {
-            const Vector3 radial(std::cos(angle), std::sin(angle), 0);
-            surface.push_back(cylinder.radius * radial + Vector3(0, 0, v * cylinder.half_length));
-            surface.push_back(0.5 * (v + 1) * cylinder.radius * radial + Vector3(0, 0, side * cylinder.half_length));
+            const bool has_bore = std::holds_alternative<Tube>(shape.kind);
+            const double outer = has_bore ? tube.radius : cylinder.radius, bore = has_bore ? tube.inner_radius : 0;
+            const Vector3 radial(std::cos(angle), std::sin(angle), 0), along(0, 0, v * cylinder.half_length);
+            surface.push_back(outer * radial + along);
+            if (has_bore) surface.push_back(bore * radial + along);
+            surface.push_back((bore + 0.5 * (v + 1) * (outer - bore)) * radial +
+                              Vector3(0, 0, side * cylinder.half_length));
           }
         }
       }

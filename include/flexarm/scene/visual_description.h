@@ -16,6 +16,7 @@ struct BoxShape {
 };
 struct CylinderShape {
   double radius = 0, length = 0;  ///< [m]
+  double inner_radius = 0;        ///< > 0: a tube, for contact only [m]
 };
 struct SphereShape {
   double radius = 0;  ///< [m]
