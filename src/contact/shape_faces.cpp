@@ -34,8 +34,11 @@ bool is_over(const Box& box, int face, const Vector3& y, double slack) {
   beside[face / 2] = 0;
   return beside.maxCoeff() <= slack;
 }
+Vector3 normal_of(const Box&, int face) {
+  return (face % 2 == 0 ? 1.0 : -1.0) * Vector3::Unit(face / 2);
+}
 Pose frame_on(const Box& box, int face) {
-  const Vector3 outwards = (face % 2 == 0 ? 1.0 : -1.0) * Vector3::Unit(face / 2);
+  const Vector3 outwards = normal_of(box, face);
   return {box.half[face / 2] * outwards, from_z_to(outwards)};
 }
 double size_of(const Box& box) {
@@ -53,6 +56,10 @@ bool is_over(const Cylinder& cylinder, int face, const Vector3& y, double slack)
   if (face == 0) return std::abs(y.z()) - cylinder.half_length <= slack;
   return height_over(cylinder, 0, y) <= slack;
 }
+/// Not of the side.
+Vector3 normal_of(const Cylinder&, int face) {
+  return (face == 1 ? 1.0 : -1.0) * Vector3::UnitZ();
+}
 Pose frame_on(const Cylinder& cylinder, int face) {
   if (face == 1) return {{0, 0, cylinder.half_length}, Quaternion::Identity()};
   return {{0, 0, -cylinder.half_length}, Quaternion(0, 1, 0, 0)};
@@ -69,6 +76,9 @@ double height_over(const Hull& hull, int face, const Vector3& y) {
 }
 bool is_over(const Hull& hull, int face, const Vector3& y, double slack) {
   return is_over(*hull.polytope, hull.polytope->faces[face], y, slack);
+}
+Vector3 normal_of(const Hull& hull, int face) {
+  return hull.polytope->faces[face].normal;
 }
 Pose frame_on(const Hull& hull, int face) {
   const Polytope::Face& each = hull.polytope->faces[face];
@@ -175,7 +185,10 @@ bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
 }
 
 Vector3 face_normal(const ContactShape& shape, int face) {
-  return (face == 0 ? shape : beyond_face(shape, face)).place.orientation * Vector3::UnitZ();
+  const Vector3 own = face == 0 ? Vector3(Vector3::UnitZ())
+                                : of_faces(shape, Vector3(Vector3::UnitZ()),
+                                           [&](const auto& each) { return normal_of(each, face - 1); });
+  return shape.place.orientation * own;
 }
 
 bool is_flat(const ContactShape& shape) {
@@ -184,13 +197,13 @@ bool is_flat(const ContactShape& shape) {
 }
 
 int face_below(const ContactShape& shape, const Rim& rim) {
-  const Vector3 middle = own_point(shape, rim.middle);
+  const Rim own{own_point(shape, rim.middle), shape.place.orientation.conjugate() * rim.axis, rim.radius};
   return of_faces(shape, 0, [&](const auto& each) {
     int best = 0;
     double highest = -std::numeric_limits<double>::infinity();
     for (int face = 0; face < face_count(each); ++face) {
-      const Vector3 normal = face_normal(shape, face + 1);
-      const double height = height_over(each, face, middle) + normal.dot(lowest_point(rim, normal));
+      const Vector3 normal = normal_of(each, face);
+      const double height = height_over(each, face, own.middle) + normal.dot(lowest_point(own, normal));
       if (height > highest) highest = height, best = face + 1;
     }
     return best;
