@@ -37,16 +37,15 @@ void allow_start(ContactLaw& law, double deepest) {
 }
 
 double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface) {
-  const auto pose_of = poses_in(model.nodes);
+  const SeenStations seen(side, surface, poses_in(model.nodes));
   double deepest = -std::numeric_limits<double>::infinity();
   for (const ContactStation& station : side.stations)
     for (const ContactShape& shape : surface.shapes) {
-      const int face = face_of(side, station, surface, shape, 0, pose_of);
-      const StationPlace seen = place_of(side, station, surface, shape, face, pose_of);
-      const double radius = station.radius - seen.rise;
-      const Matrix3 outwards = outwards_of(side, station, surface, pose_of);
-      const double start = start_inside(shape, {}, radius, seen.point(), outwards, face).start;
-      deepest = std::max(deepest, start > 0 ? start : radius - shape.gap(seen.point()));
+      const int face = seen.face(station, shape, 0);
+      const StationPlace place = seen.place(station, shape, face);
+      const double radius = station.radius - place.rise;
+      const double start = start_inside(shape, {}, radius, place.point(), seen.outwards(station), face).start;
+      deepest = std::max(deepest, start > 0 ? start : radius - shape.gap(place.point()));
     }
   return deepest;
 }

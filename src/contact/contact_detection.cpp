@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "contact/contact_element.h"
 
@@ -23,12 +24,8 @@ ContactElement::Bounds ContactElement::bounds(const PoseOf& pose_of) const {
   for (const int node : side_.nodes) middle += middle_of_node(node) / static_cast<double>(side_.nodes.size());
   double apart = 0;
   for (const int node : side_.nodes) apart = std::max(apart, (middle_of_node(node) - middle).norm());
-  return {seen_from(surface_, middle, pose_of), spread_ * apart + own_radius_};
-}
-
-double ContactElement::turning_speed(const ForceStart& start) const {
-  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : start.velocities[node]; };
-  return (motion_of(side_.nodes[0]) - motion_of(surface_.node)).tail<3>().norm();
+  const NodePose& base = pose_of(surface_.node);
+  return {base.rotation.transpose() * (middle - base.position), spread_ * apart + own_radius_};
 }
 
 double ContactElement::highest_speed(const ForceStart& start) const {
@@ -47,7 +44,7 @@ double ContactElement::highest_speed(const ForceStart& start) const {
   }
   // Stations of a beam are on its line, so rotations of nodes do not move them.
   if (side_.nodes.size() > 1) return spread_ * speed;
-  return speed + turning_speed(start) * own_radius_;
+  return speed + (motion_of(side_.nodes[0]) - base).tail<3>().norm() * own_radius_;
 }
 
 int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
@@ -55,15 +52,21 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   const int all = static_cast<int>(reach().size());
   if (start.duration == 0) return all;
   const auto pose_of = poses_in(start.poses);
-  const double duration = std::abs(start.duration), close = kNear * size_, turning = turning_speed(start);
+  const double duration = std::abs(start.duration), close = kNear * size_;
   const Bounds bounds = this->bounds(poses_in(start.poses));
   const double most = kMoreWay * duration * highest_speed(start) + close + bounds.radius;
+  std::optional<SeenStations> seen;
+  std::optional<StationVelocities> velocities;
   for (const ContactShape& shape : surface_.shapes) {
     if (shape.gap(bounds.middle) >= most) continue;
+    if (!seen) {
+      seen.emplace(side_, surface_, pose_of);
+      velocities.emplace(side_, surface_, pose_of, start.velocities);
+    }
     for (const ContactStation& station : side_.stations) {
-      const double gap = least_gap(station, shape, pose_of);
-      double way = duration * velocity(station, pose_of, start.velocities).norm();
-      if (station.half > 0) way += duration * turning * station.half;
+      const double gap = seen->least_gap(station, shape);
+      double way = duration * velocities->at(station, {seen->middle(station)}).norm();
+      if (station.half > 0) way += duration * velocities->rotation().norm() * station.half;
       if (gap < kMoreWay * way + close) return all;
     }
   }
@@ -86,20 +89,24 @@ void ContactElement::for_each_passage(const ForceStep& step, const Visit& visit)
   const Bounds begin = bounds(poses_in(step.begin)), end = bounds(poses_in(step.end));
   const double most = (end.middle - begin.middle).norm() + 2 * begin.radius + end.radius;
   const std::size_t shapes = surface_.shapes.size();
+  std::optional<Seen> seen;
   for (std::size_t k = 0; k < shapes; ++k) {
     const ContactShape& shape = surface_.shapes[k];
     if (shape.gap(begin.middle) > most) continue;
+    if (!seen) seen.emplace(this->seen(step));
     const double* memory = step.memory + PointMemory::kSize * k;
     for (const ContactStation& station : side_.stations) {
-      if (may_touch(station, shape, step) && !visit(passage(station, shape, memory_at(memory), step), shape)) return;
+      if (may_touch(station, shape, *seen) && !visit(passage(station, shape, memory_at(memory), step, *seen), shape))
+        return;
       memory += PointMemory::kSize * shapes;
     }
   }
 }
 
 ContactElement::Passage ContactElement::passage(const ContactStation& station, const ContactShape& shape,
-                                                const PointMemory& memory, const ForceStep& step) const {
-  PointMotion motion = motion_of(station, shape, memory.face, step);
+                                                const PointMemory& memory, const ForceStep& step,
+                                                const Seen& seen) const {
+  PointMotion motion = motion_of(station, shape, memory.face, seen);
   motion.duration = std::abs(step.duration);
   const Vector3 from = motion.begin_point(), to = motion.end_point();
   Passage out{from, to, felt_shape(shape, law_, station.radius, motion, memory), {}, {}, {}, 0};

@@ -67,12 +67,12 @@ ContactElement::Frames ContactElement::frames(const ForceStep& step) const {
 }
 
 ContactElement::Placed ContactElement::placed(const ContactStation& station, const Frames& frames,
-                                              const ForceStep& step) const {
+                                              const ForceStep& step, const Seen& seen) const {
   Placed out;
   const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
   const double weight = frames.weight;
-  const Vector3 begin = middle_of(side_, station, begin_of) - frames.base_begin.position;
-  out.end_base_arm = middle_of(side_, station, end_of) - frames.base_end.position;
+  const Vector3 begin = frames.base_begin.rotation * seen.begin.middle(station);
+  out.end_base_arm = frames.base_end.rotation * seen.end.middle(station);
   out.base_arm = weight * out.end_base_arm + (1 - weight) * begin;
   out.turn = -frames.base_turn;
   for (std::size_t i = 0; i < side_.nodes.size(); ++i) out.turn += station.weights[i] * frames.turns[i];
@@ -91,22 +91,23 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     return;
   }
   const Frames frames = this->frames(step);
+  const Seen seen = this->seen(step);
   const double* memory = step.memory;
   double* new_memory = step.new_memory;
   for_each_pair([&](const ContactStation& given, const ContactShape& shape) {
     const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
 
-    const bool is_far = is_new && !may_touch(given, shape, step);
-    const Slide slide = is_far ? Slide() : this->slide(given, shape, step);
+    const bool is_far = is_new && !may_touch(given, shape, seen);
+    const Slide slide = is_far ? Slide() : this->slide(given, shape, step, seen);
     if (is_far || (is_new && slide.is_away)) {
       memory += PointMemory::kSize;
       new_memory += PointMemory::kSize;
       return true;
     }
     const ContactStation& station = slide.slides ? slide.station : given;
-    const Placed placed = this->placed(station, frames, step);
+    const Placed placed = this->placed(station, frames, step, seen);
     const PointMemory old = memory_at(memory);
-    PointMotion motion = motion_of(station, shape, old.face, step);
+    PointMotion motion = motion_of(station, shape, old.face, seen);
     if (slide.slides) {
       motion.begin_excess = slide.begin_excess;
       motion.end_excess = slide.end_excess;
@@ -138,11 +139,12 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
 /// Energy stored in contacts at the beginning of a step [J]. It is dissipated if these do not touch any more.
 double ContactElement::remembered_energy(const ForceStep& step) const {
   double energy = 0;
+  const SeenStations seen = this->seen(poses_in(step.begin));
   const double* memory = step.memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const PointMemory old = memory_at(memory);
     if (old.face != 0 || old.stretch != Vector3::Zero() || old.turned != Vector3::Zero())
-      energy += stored_energy(station, shape, old, poses_in(step.begin));
+      energy += stored_energy(station, shape, old, seen);
     memory += PointMemory::kSize;
     return true;
   });

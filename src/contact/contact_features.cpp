@@ -3,28 +3,23 @@
 
 namespace flexarm {
 
-bool ContactElement::may_touch(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const {
-  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
-  double way = (place(station, end_of) - place(station, begin_of)).norm();
+bool ContactElement::may_touch(const ContactStation& station, const ContactShape& shape, const Seen& seen) {
+  double way = (seen.end.middle(station) - seen.begin.middle(station)).norm();
   if (station.half > 0)
-    way += station.half *
-           (segment_of(side_, station, surface_, end_of).axis - segment_of(side_, station, surface_, begin_of).axis)
-               .norm();
-  return least_gap(station, shape, begin_of) <= way;
+    way += station.half * (seen.end.segment(station).axis - seen.begin.segment(station).axis).norm();
+  return seen.begin.least_gap(station, shape) <= way;
 }
 
 PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
-                                      const ForceStep& step) const {
-  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
+                                      const Seen& seen) const {
   PointMotion out;
-  out.face = face_of(side_, station, surface_, shape, remembered, begin_of);
-  const StationPlace begin = place_of(side_, station, surface_, shape, out.face, begin_of),
-                     end = place_of(side_, station, surface_, shape, out.face, end_of);
+  out.face = seen.begin.face(station, shape, remembered);
+  const StationPlace begin = seen.begin.place(station, shape, out.face), end = seen.end.place(station, shape, out.face);
   out.begin = begin.middle, out.begin_offset = begin.offset;
   out.end = end.middle, out.end_offset = end.offset;
   out.begin_excess = -begin.rise, out.end_excess = -end.rise;
-  if (step.duration != 0) out.begin_velocity = velocity(station, begin_of, step.velocities, begin.offset);
-  out.outwards = outwards_of(side_, station, surface_, begin_of);
+  out.begin_velocity = seen.velocities.at(station, begin);
+  out.outwards = seen.begin.outwards(station);
   return out;
 }
 
@@ -49,21 +44,20 @@ ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const C
 }
 
 ContactElement::Slide ContactElement::slide(const ContactStation& station, const ContactShape& shape,
-                                            const ForceStep& step) const {
+                                            const ForceStep& step, const Seen& seen) const {
   Slide out;
   if (station.half == 0) return out;
   out.slides = true;
   out.station = station;
   out.station.half = 0;
-  const Segment begin = segment_of(side_, station, surface_, poses_in(step.begin)),
-                end = segment_of(side_, station, surface_, poses_in(step.end));
+  const Segment begin = seen.begin.segment(station), end = seen.end.segment(station);
   const NearestOnSegment first = nearest_on(begin, shape);
   const double way = (end.middle - begin.middle).norm() + station.half * (end.axis - begin.axis).norm();
   out.is_away = first.distance - station.radius > way;
   if (out.is_away) return out;
   const NearestOnSegment last = nearest_on(end, shape);
   const bool is_instant = step.at_end || step.duration == 0;
-  const double along = is_instant ? last.along : midway(station, shape, step);
+  const double along = is_instant ? last.along : midway(station, shape, step.duration, seen);
   out.station.arm += along * station.axis;
   const SignedDistance felt = shape.distance(end.at(along)), nearest = shape.distance(end.at(last.along));
   out.begin_excess = shape.distance(begin.at(along)).value - first.distance;
@@ -87,13 +81,13 @@ ContactElement::Slide ContactElement::slide(const ContactStation& station, const
 }
 
 /// The place along a segment that is nearest in the middle of a step, by the velocities at its beginning [m].
-double ContactElement::midway(const ContactStation& station, const ContactShape& shape, const ForceStep& step) const {
-  const auto begin_of = poses_in(step.begin);
-  Segment segment = segment_of(side_, station, surface_, begin_of);
-  const Vector3 end = velocity(station, begin_of, step.velocities, segment.axis),
-                middle = velocity(station, begin_of, step.velocities);
-  segment.middle += 0.5 * step.duration * middle;
-  segment.axis = (segment.axis + 0.5 * step.duration * (end - middle)).normalized();
+double ContactElement::midway(const ContactStation& station, const ContactShape& shape, double duration,
+                              const Seen& seen) {
+  Segment segment = seen.begin.segment(station);
+  const Vector3 middle = seen.velocities.at(station, {segment.middle}),
+                end = seen.velocities.at(station, {segment.middle, segment.axis});
+  segment.middle += 0.5 * duration * middle;
+  segment.axis = (segment.axis + 0.5 * duration * (end - middle)).normalized();
   return nearest_on(segment, shape).along;
 }
 

@@ -8,22 +8,12 @@
 #include "model/state.h"
 
 namespace flexarm {
-namespace {
-
-auto poses_in(const State& state) {
-  return [&state](int node) { return node < 0 ? NodePose() : node_pose(state.nodes[node]); };
-}
-
-}  // namespace
-
 void ContactElement::start(const State& state, const double*, double* memory) const {
-  const auto pose_of = poses_in(state);
+  const SeenStations seen = this->seen(poses_in(state));
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const int face = face_of(side_, station, surface_, shape, 0, pose_of);
-    const StationPlace seen = place(station, shape, face, pose_of);
-    put(start_inside(shape, law_, station.radius - seen.rise, seen.point(),
-                     outwards_of(side_, station, surface_, pose_of), face),
-        memory);
+    const int face = seen.face(station, shape, 0);
+    const StationPlace place = seen.place(station, shape, face);
+    put(start_inside(shape, law_, station.radius - place.rise, place.point(), seen.outwards(station), face), memory);
     memory += PointMemory::kSize;
     return true;
   });
@@ -31,8 +21,9 @@ void ContactElement::start(const State& state, const double*, double* memory) co
 
 double ContactElement::energy(const State& state, const double* memory) const {
   double energy = 0;
+  const SeenStations seen = this->seen(poses_in(state));
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    energy += stored_energy(station, shape, memory_at(memory), poses_in(state));
+    energy += stored_energy(station, shape, memory_at(memory), seen);
     memory += PointMemory::kSize;
     return true;
   });
@@ -42,13 +33,15 @@ double ContactElement::energy(const State& state, const double* memory) const {
 double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker& take) const {
   const auto pose_of = poses_in(motion.state);
   const NodePose body = pose_of(surface_.node);
+  const SeenStations seen = this->seen(pose_of);
+  const StationVelocities velocities(side_, surface_, pose_of, motion.velocities);
   const double sign = is_reversed_ ? -1 : 1;
   const double* memory = motion.memory;
   double least = std::numeric_limits<double>::infinity();
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     PointMemory old = memory_at(memory);
     memory += PointMemory::kSize;
-    const StationPlace place = this->place(station, shape, old.face, pose_of);
+    const StationPlace place = seen.place(station, shape, seen.face(station, shape, old.face));
     const double radius = station.radius - place.rise;
     if (place.face != 0) {
       if (!is_over_face(shape, place.face, place.point())) return true;
@@ -59,8 +52,8 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
       least = std::min(least, gap);
       if (gap >= 0) return true;
     }
-    const PointTouch local = point_touch(shape, law_of(station), radius, place.point(),
-                                         velocity(station, pose_of, motion.velocities, place.offset), old);
+    const PointTouch local =
+        point_touch(shape, law_of(station), radius, place.point(), velocities.at(station, place), old);
     least = std::min(least, local.gap);
     if (local.gap >= 0) return true;
     TouchingPoint point;
@@ -70,8 +63,7 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
     point.friction = sign * (body.rotation * local.friction);
     point.couple = sign * (body.rotation * local.couple);
     if (station.rim > 0)
-      point.couple +=
-          sign * local.push * (body.rotation * couple_beside(rim_of(side_, station, surface_, pose_of), local.normal));
+      point.couple += sign * local.push * (body.rotation * couple_beside(seen.rim(station), local.normal));
     point.gap = local.gap;
     take(point);
     return true;
@@ -81,8 +73,9 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
 
 template <class Visit>
 void ContactElement::for_each_touching(const State& state, const double* memory, const Visit& visit) const {
+  const SeenStations seen = this->seen(poses_in(state));
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const StationPlace place = this->place(station, shape, memory_at(memory).face, poses_in(state));
+    const StationPlace place = seen.place(station, shape, seen.face(station, shape, memory_at(memory).face));
     memory += PointMemory::kSize;
     const bool by_face = place.face != 0 && is_over_face(shape, place.face, place.point());
     const SignedDistance distance = (by_face ? beyond_face(shape, place.face) : shape).distance(place.point());

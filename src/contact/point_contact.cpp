@@ -71,9 +71,11 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.slope.topRows<3>() += drag_slope;
   action.slope.bottomRows<3>() += hat(offset) * drag_slope;
   action.slope.bottomLeftCorner<3, 3>() -= hat(drag) * by_end;
-  const Matrix3 drag_by_offset = -law.grip * (grip.by_slip * turning * by_offset + pull_by_end(grip, pushed));
-  action.by_offset.topRows<3>() += drag_by_offset;
-  action.by_offset.bottomRows<3>() += hat(offset) * drag_by_offset - hat(drag) * by_offset;
+  if (!motion.end_offset.isZero(0)) {
+    const Matrix3 drag_by_offset = -law.grip * (grip.by_slip * turning * by_offset + pull_by_end(grip, pushed));
+    action.by_offset.topRows<3>() += drag_by_offset;
+    action.by_offset.bottomRows<3>() += hat(offset) * drag_by_offset - hat(drag) * by_offset;
+  }
   action.by_begin.topRows<3>() = law.grip * grip.by_slip;
   action.by_begin.bottomRows<3>() = hat(offset) * action.by_begin.topRows<3>();
   const Vector3 drag_by_excess = -law.grip * pull_by_penetration(grip, pushed);

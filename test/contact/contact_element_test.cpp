@@ -316,7 +316,7 @@ TEST(ContactElement, TellsTheSmallestGap) {
 /// A scene with a single station of the given penetration.
 Scene alone(const Scene& scene, const ContactStation& station, const Poses& poses, double penetration) {
   const auto pose_of = [&](int node) { return node < 0 ? NodePose() : poses[node]; };
-  const Vector3 place = seen_from(scene.surface, middle_of(scene.side, station, pose_of), pose_of);
+  const Vector3 place = SeenStations(scene.side, scene.surface, pose_of).middle(station);
   Scene out{scene.name, {scene.side.nodes, {station}}, scene.surface};
   out.side.stations[0].radius = scene.surface.shapes[0].gap(place) + penetration;
   return out;
