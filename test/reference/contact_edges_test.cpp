@@ -39,8 +39,8 @@ double speed_after(double restitution, double at) {
   return (1 + restitution) / (1 + 12 / (kBarLength * kBarLength) * at * at) - 1;
 }
 
-// The hit of boxes with each other may act anywhere on the square in which they touch. Several points that hit at a time
-// give back up to 2 % more or less (docs/notes/contact.md 2).
+// The hit of boxes with each other may act anywhere on the square in which they touch. Several points that hit at a
+// time give back up to 2 % more or less (docs/notes/contact.md 2).
 TEST(ContactOfEdges, BarsThatCrossHitEachOther) {
   constexpr double kRestitution = 0.5;
   for (const double at : {0.0, 0.0625, 0.21, 0.4})
