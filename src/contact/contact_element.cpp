@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 #include "math/cayley.h"
 
@@ -98,25 +99,28 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
 
     const bool is_far = is_new && !may_touch(given, shape, seen);
-    const Slide slide = is_far ? Slide() : this->slide(given, shape, step, seen);
-    if (is_far || (is_new && slide.is_away)) {
+    std::optional<Slide> slide;
+    if (!is_far && given.half > 0) slide = this->slide(given, shape, step, seen);
+    if (is_far || (is_new && slide && slide->is_away)) {
       memory += PointMemory::kSize;
       new_memory += PointMemory::kSize;
       return true;
     }
-    const ContactStation& station = slide.slides ? slide.station : given;
+    const ContactStation& station = slide ? slide->station : given;
     const Placed placed = this->placed(station, frames, step, seen);
     const PointMemory old = memory_at(memory);
     PointMotion motion = motion_of(station, shape, old.face, seen);
-    if (slide.slides) {
-      motion.begin_excess = slide.begin_excess;
-      motion.end_excess = slide.end_excess;
+    if (slide) {
+      motion.begin_excess = slide->begin_excess;
+      motion.end_excess = slide->end_excess;
       motion.lever = station.radius;
     }
     motion.turn = frames.axes.transpose() * placed.turn;
     motion.duration = step.duration;
     motion.at_end = step.at_end;
-    const Tilt tilt = this->tilt(station, shape, motion, frames, step);
+    std::optional<Tilt> tilt;
+    if (station.rim > 0) tilt = this->tilt(station, shape, motion, frames, step);
+    const Moving moving{tilt ? &*tilt : nullptr, slide ? &*slide : nullptr};
     const PointAction local =
         point_action(shape, law_of(station), station.radius, motion, old, action.tangent.size() > 0);
     action.dissipated += local.dissipated;
@@ -124,14 +128,14 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     put(local.memory, new_memory);
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
-    if (local.acts) add(station, frames, placed, tilt, local, action);
+    if (local.acts) add(station, frames, placed, moving, local, action);
     if (!local.acts || action.tangent.size() == 0) return true;
     if (action.tangent.rows() == 12)
-      add_tangent<12>(station, frames, placed, tilt, slide, local, action);
+      add_tangent<12>(station, frames, placed, moving, local, action);
     else if (action.tangent.rows() == 6)
-      add_tangent<6>(station, frames, placed, tilt, slide, local, action);
+      add_tangent<6>(station, frames, placed, moving, local, action);
     else
-      add_tangent<Eigen::Dynamic>(station, frames, placed, tilt, slide, local, action);
+      add_tangent<Eigen::Dynamic>(station, frames, placed, moving, local, action);
     return true;
   });
 }
@@ -151,11 +155,11 @@ double ContactElement::remembered_energy(const ForceStep& step) const {
   return energy;
 }
 
-void ContactElement::add(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
-                         const PointAction& local, ForceAction& action) const {
+void ContactElement::add(const ContactStation& station, const Frames& frames, const Placed& placed,
+                         const Moving& moving, const PointAction& local, ForceAction& action) const {
   const Vector3 force = frames.axes * local.wrench.head<3>();
   Vector3 couple = frames.axes * local.wrench.tail<3>();
-  if (tilt.tilts) couple += local.push * tilt.lever.value * tilt.axis.cross(tilt.normal);
+  if (moving.tilt) couple += local.push * moving.tilt->lever.value * moving.tilt->axis.cross(moving.tilt->normal);
   Vector6 wrench;
   wrench << force, placed.arm.cross(force) + couple;
   const int count = moving_nodes();

@@ -126,7 +126,8 @@ class ContactElement : public ForceElement {
   /// How a rim is tilted against the face that it may touch.
   Tilt tilt(const ContactStation& station, const ContactShape& shape, const PointMotion& motion, const Frames& frames,
             const ForceStep& step) const;
-  void add(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
+  struct Moving;
+  void add(const ContactStation& station, const Frames& frames, const Placed& placed, const Moving& moving,
            const PointAction& local, ForceAction& action) const;
   template <int kColumns>
   struct Rows;
@@ -137,8 +138,8 @@ class ContactElement : public ForceElement {
   template <int kColumns>
   void add_tilt(const Frames& frames, const Tilt& tilt, const PointAction& local, Rows<kColumns>& rows) const;
   template <int kColumns>
-  void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const Tilt& tilt,
-                   const Slide& slide, const PointAction& local, ForceAction& action) const;
+  void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const Moving& moving,
+                   const PointAction& local, ForceAction& action) const;
   /// A ball that contains all stations.
   struct Bounds {
     Vector3 middle;  // in the frame of the shapes [m]

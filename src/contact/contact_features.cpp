@@ -4,10 +4,11 @@
 namespace flexarm {
 
 bool ContactElement::may_touch(const ContactStation& station, const ContactShape& shape, const Seen& seen) {
-  double way = (seen.end.middle(station) - seen.begin.middle(station)).norm();
-  if (station.half > 0)
-    way += station.half * (seen.end.segment(station).axis - seen.begin.segment(station).axis).norm();
-  return seen.begin.least_gap(station, shape) <= way;
+  const Vector3 begin = seen.begin.middle(station), end = seen.end.middle(station);
+  const double way = (end - begin).norm();
+  if (station.half == 0) return shape.gap(begin) - station.reach() <= way;
+  const double turn = (seen.end.segment(station).axis - seen.begin.segment(station).axis).norm();
+  return seen.begin.least_gap(station, shape) <= way + station.half * turn;
 }
 
 PointMotion ContactElement::motion_of(const ContactStation& station, const ContactShape& shape, int remembered,
@@ -27,8 +28,6 @@ ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const C
                                           const PointMotion& motion, const Frames& frames,
                                           const ForceStep& step) const {
   Tilt out;
-  if (station.rim == 0) return out;
-  out.tilts = true;
   const Vector3 normal = face_normal(shape, motion.face);
   const Vector3 begin_axis = poses_in(step.begin)(side_.nodes[0]).rotation * station.axis;
   out.end_axis = poses_in(step.end)(side_.nodes[0]).rotation * station.axis;
@@ -46,8 +45,6 @@ ContactElement::Tilt ContactElement::tilt(const ContactStation& station, const C
 ContactElement::Slide ContactElement::slide(const ContactStation& station, const ContactShape& shape,
                                             const ForceStep& step, const Seen& seen) const {
   Slide out;
-  if (station.half == 0) return out;
-  out.slides = true;
   out.station = station;
   out.station.half = 0;
   const Segment begin = seen.begin.segment(station), end = seen.end.segment(station);

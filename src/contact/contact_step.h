@@ -25,7 +25,6 @@ struct ContactElement::Placed {
 
 /// A rim over a step. Its lowest point moves if it tilts. (docs/notes/contact.md 1.2)
 struct ContactElement::Tilt {
-  bool tilts = false;          // false: the station is no rim
   Vector3 axis, end_axis;      // of the rim, world axes, over the step and at the end
   Vector3 normal, end_normal;  // of the face, likewise
   RimLever lever;              // of the push, about `axis` x `normal`
@@ -38,7 +37,6 @@ struct ContactElement::Tilt {
 /// A segment over a step. It touches at a point that is fixed to it over the step, near to the nearest ones of both
 /// ends. By how much these are nearer is the excess. (docs/notes/contact.md 1.2)
 struct ContactElement::Slide {
-  bool slides = false;     // false: the station is no segment
   bool is_away = false;    // no contact is possible in this step
   ContactStation station;  // that point
   double begin_excess = 0, end_excess = 0;
@@ -47,6 +45,12 @@ struct ContactElement::Slide {
   // the segment's spin, in the frame of the shapes.
   Eigen::RowVector3d by_seen = Eigen::RowVector3d::Zero(), by_spin = by_seen;
   Eigen::RowVector3d along_by_seen = by_seen, along_by_spin = by_seen;
+};
+
+/// How the point that touches moves against the body. Null: it is no rim, no segment.
+struct ContactElement::Moving {
+  const Tilt* tilt;
+  const Slide* slide;
 };
 
 }  // namespace flexarm

@@ -54,17 +54,15 @@ ContactElement::Rows<kColumns> ContactElement::rows_of(const ContactStation& sta
   const Matrix3& end_axes = frames.base_end.rotation;
   Rows<kColumns> rows;
   rows.way = Rows3<kColumns>::Zero(3, base + 6 * has_base);
-  rows.turn = rows.spin = rows.way;
+  rows.turn = rows.way;
   for (int i = 0; i < count; ++i) {
     rows.way.template middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
     rows.turn.template middleCols<3>(6 * i + 3) = station.weights[i] * cayley::inverse_tangent(frames.turns[i]);
-    rows.spin.template middleCols<3>(6 * i + 3).diagonal().setConstant(station.weights[i]);
   }
   if (count == 1) rows.way.template middleCols<3>(3) = -hat(placed.end_arm);
   if (has_base) {
     rows.way.template middleCols<3>(base).diagonal().setConstant(-1);
     rows.turn.template middleCols<3>(base + 3) = -cayley::inverse_tangent(frames.base_turn);
-    rows.spin.template middleCols<3>(base + 3).diagonal().setConstant(-1);
   }
   rows.seen = end_axes.transpose() * rows.way;
   rows.turned = frames.axes.transpose() * rows.turn;
@@ -94,26 +92,30 @@ void ContactElement::add_slide(const Frames& frames, const Slide& slide, const P
 
 template <int kColumns>
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
-                                 const Tilt& tilt, const Slide& slide, const PointAction& local,
-                                 ForceAction& action) const {
+                                 const Moving& moving, const PointAction& local, ForceAction& action) const {
   const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
   Rows<kColumns> rows = rows_of<kColumns>(station, frames, placed);
-  rows.force = rows.couple = rows.along = Rows3<kColumns>::Zero(3, base + 6 * has_base);
-  if (slide.slides) add_slide(frames, slide, local, rows);
+  rows.force = rows.couple = Rows3<kColumns>::Zero(3, base + 6 * has_base);
+  if (moving.tilt || moving.slide) {  // of a body
+    rows.spin = rows.along = rows.force;
+    if (is_body) rows.spin.template middleCols<3>(3).setIdentity();
+    if (has_base) rows.spin.template middleCols<3>(base + 3).diagonal().setConstant(-1);
+  }
+  if (moving.slide) add_slide(frames, *moving.slide, local, rows);
   const Matrix6& slope = local.slope;
   rows.force += frames.axes * (slope.topLeftCorner<3, 3>() * rows.seen + slope.topRightCorner<3, 3>() * rows.turned);
   rows.couple +=
       frames.axes * (slope.bottomLeftCorner<3, 3>() * rows.seen + slope.bottomRightCorner<3, 3>() * rows.turned);
-  if (tilt.tilts) add_tilt(frames, tilt, local, rows);
+  if (moving.tilt) add_tilt(frames, *moving.tilt, local, rows);
   if (has_base) {
     rows.force.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
     rows.couple.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
   }
   const Matrix3 pressed = frames.weight * hat(Vector3(frames.axes * local.wrench.head<3>()));
   Rows3<kColumns> moment = hat(placed.arm) * rows.force + rows.couple;
-  if (slide.slides) moment -= pressed * rows.along;
+  if (moving.slide) moment -= pressed * rows.along;
   if (is_body) moment.template middleCols<3>(3) += pressed * hat(placed.end_arm);
   for (int i = 0; i < count; ++i) {
     action.tangent.middleRows<3>(6 * i) -= station.weights[i] * rows.force;
@@ -125,12 +127,11 @@ void ContactElement::add_tangent(const ContactStation& station, const Frames& fr
 }
 
 // For one node against the world, two nodes, or a beam.
-template void ContactElement::add_tangent<6>(const ContactStation&, const Frames&, const Placed&, const Tilt&,
-                                             const Slide&, const PointAction&, ForceAction&) const;
-template void ContactElement::add_tangent<12>(const ContactStation&, const Frames&, const Placed&, const Tilt&,
-                                              const Slide&, const PointAction&, ForceAction&) const;
+template void ContactElement::add_tangent<6>(const ContactStation&, const Frames&, const Placed&, const Moving&,
+                                             const PointAction&, ForceAction&) const;
+template void ContactElement::add_tangent<12>(const ContactStation&, const Frames&, const Placed&, const Moving&,
+                                              const PointAction&, ForceAction&) const;
 template void ContactElement::add_tangent<Eigen::Dynamic>(const ContactStation&, const Frames&, const Placed&,
-                                                          const Tilt&, const Slide&, const PointAction&,
-                                                          ForceAction&) const;
+                                                          const Moving&, const PointAction&, ForceAction&) const;
 
 }  // namespace flexarm
