@@ -21,7 +21,8 @@ namespace {
 
 /// Depth beyond which a contact gives way no further, relative to sizes.
 constexpr double kContactDepth = 0.1;
-/// A shape that is smaller than this, relative to the mechanism, is a point. It may penetrate by more than its size.
+/// A shape that is smaller than this, relative to the arms of its body, is a point. It may penetrate by more than its
+/// size.
 constexpr double kPoint = 1e-4;
 /// Radius of gyration of a ball, relative to its radius.
 constexpr double kTurnedLever = 0.63;
@@ -124,9 +125,20 @@ class ContactBuilder {
     auto surface = std::find_if(side.surfaces.begin(), side.surfaces.end(), on_node);
     if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
     surface->shapes.push_back(shape);
-    if (const double size = half_width(shape); size > kPoint * model_.length_scale)
-      side.size = std::min(side.size, size);
+    const double size = half_width(shape), lever = std::max(shape.place.position.norm(), longest_arm(node));
+    if (size > (node < 0 ? 0 : kPoint * lever)) side.size = std::min(side.size, size);
     if (node >= 0) side.mass = mass_of_body(model_, node);
+  }
+
+  /// The largest distance of a body's joints from its node, or of those by which it hangs from the node before [m].
+  double longest_arm(int node) const {
+    double longest = 0;
+    for (const JointMap& joint : model_.joints) {
+      if (joint.slave == node) longest = std::max(longest, joint.arm.norm());
+      if (joint.master >= 0 && (joint.slave == node || joint.master == node))
+        longest = std::max(longest, joint.origin.position.norm());
+    }
+    return longest;
   }
 
   /// Half of the distance between the farthest points of a side that has points only; infinite for one point [m].

@@ -1,4 +1,6 @@
 // Which points of rims and segments touch over a step. (docs/notes/contact.md 1.2)
+#include <cmath>
+
 #include "contact/contact_step.h"
 
 namespace flexarm {
@@ -50,7 +52,7 @@ ContactElement::Slide ContactElement::slide(const ContactStation& station, const
   const Segment begin = seen.begin.segment(station), end = seen.end.segment(station);
   const NearestOnSegment first = nearest_on(begin, shape);
   const double way = (end.middle - begin.middle).norm() + station.half * (end.axis - begin.axis).norm();
-  out.is_away = first.distance - station.radius > way;
+  out.is_away = first.distance - station.radius > way || !std::isfinite(first.distance);
   if (out.is_away) return out;
   const NearestOnSegment last = nearest_on(end, shape);
   const bool is_instant = step.at_end || step.duration == 0;

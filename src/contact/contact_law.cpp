@@ -111,6 +111,7 @@ double Restitution::damping_at(double speed) const {
 }
 
 double contact_energy(const ContactLaw& law, double penetration) {
+  if (penetration <= 0) return 0;
   const double x = hardened({penetration, law.depth}).value;
   return 0.5 * law.stiffness * x * x;
 }

@@ -5,7 +5,9 @@
 namespace flexarm {
 
 NearestOnSegment nearest_on(const Segment& segment, const ContactShape& shape) {
-  const double curvature = segment.curvature;
+  const double curvature = segment.curvature, gap = shape.gap(segment.middle);
+  constexpr double kFar = 1e100;  // squares of such distances overflow
+  if (!(gap < kFar)) return {0, 0, gap, true};
   const auto slope_at = [&](double along) {
     return shape.distance(segment.at(along)).gradient.dot(segment.axis) + curvature * along;
   };

@@ -92,5 +92,15 @@ TEST_F(Segments, TouchPlanesInTheMiddle) {
   EXPECT_FALSE(found.is_end);
 }
 
+// Squares of such distances are not finite.
+TEST_F(Segments, AreFarWhereNumbersOverflow) {
+  for (const ContactShape& shape : convex_shapes())
+    for (const double far : {1e200, 1e300}) {
+      const NearestOnSegment found = nearest_on({{0, 0, far}, Vector3::UnitX(), 0.8, 0.01}, shape);
+      EXPECT_GT(found.distance, 1e100);
+      EXPECT_LE(std::abs(found.along), 0.8);
+    }
+}
+
 }  // namespace
 }  // namespace flexarm::test
