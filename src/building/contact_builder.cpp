@@ -21,9 +21,9 @@ namespace {
 
 /// Depth beyond which a contact gives way no further, relative to sizes.
 constexpr double kContactDepth = 0.1;
-/// A shape that is smaller than this, relative to the arms of its body, is a point. It may penetrate by more than its
-/// size.
-constexpr double kPoint = 1e-4;
+/// A shape whose half width is smaller than this, relative to the arms of its body, and smaller than that many metres,
+/// is a point. It may penetrate by more than its size.
+constexpr double kPoint = 1e-4, kLargestPoint = 1e-4;
 /// Radius of gyration of a ball, relative to its radius.
 constexpr double kTurnedLever = 0.63;
 /// Most intervals between the stations along an element.
@@ -126,7 +126,7 @@ class ContactBuilder {
     if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
     surface->shapes.push_back(shape);
     const double size = half_width(shape), lever = std::max(shape.place.position.norm(), longest_arm(node));
-    if (size > (node < 0 ? 0 : kPoint * lever)) side.size = std::min(side.size, size);
+    if (size > (node < 0 ? 0 : std::min(kPoint * lever, kLargestPoint))) side.size = std::min(side.size, size);
     if (node >= 0) side.mass = mass_of_body(model_, node);
   }
 
